@@ -29,10 +29,10 @@
 (defvar *cache-directory* (path-in-environment "ARS_MAGNA_CACHE")
   "The directory for all compiled files; NIL means ASDF's default cache.")
 
-(defun project-fasls ()
+(defun project-fasl-directory ()
   (uiop:subpathname *cache-directory* "project/"))
 
-(defun library-fasls ()
+(defun library-fasl-directory ()
   (uiop:subpathname *cache-directory* "libraries/"))
 
 (defun configure ()
@@ -44,8 +44,8 @@
     (asdf:initialize-output-translations
      `(:output-translations
        (,(merge-pathnames "**/*.*" *project-directory*)
-        ,(merge-pathnames "**/*.*" (project-fasls)))
-       (t (,(library-fasls) :implementation))
+        ,(merge-pathnames "**/*.*" (project-fasl-directory)))
+       (t (,(library-fasl-directory) :implementation))
        :ignore-inherited-configuration))))
 
 (defun text-on-one-line (condition)
@@ -128,7 +128,7 @@
                 append (component-files system))
           (directory (merge-pathnames "quicklisp/dists/*/distinfo.txt" (user-homedir-pathname)))))
 
-(defun library-file-endings ()
+(defun system-file-endings ()
   "Return the path endings of the files through which ASDF finds libraries."
   (remove-duplicates
    (cons "/source-registry.conf"
@@ -151,7 +151,7 @@ and of ASDF's configuration directories. The options have ASDF's format."
   "Write a list for setup.sh to OUT: the library files and directories that this Lisp depends on."
   (flet ((note (kind path) (format out "~A ~A~%" kind (uiop:native-namestring path))))
     (dolist (path (library-files)) (note "file" path))
-    (format out "~{name ~A~%~}" (library-file-endings))
+    (format out "~{name ~A~%~}" (system-file-endings))
     (loop for (directory . options) in (library-directories)
           do (note (if (getf options :recurse) "tree" "directory") directory))))
 
@@ -169,7 +169,7 @@ and of ASDF's configuration directories. The options have ASDF's format."
   (when *cache-directory*
     (uiop:delete-directory-tree fasls :validate t :if-does-not-exist :ignore)))
 
-(defun print-trouble (condition)
+(defun print-condition-and-file (condition)
   (format t "~&*** ~A~@[ in ~A~]: ~A~%" (type-of condition)
           (or *compile-file-truename* *load-truename*) condition))
 
@@ -183,15 +183,15 @@ and of ASDF's configuration directories. The options have ASDF's format."
        (equal "fasl" (pathname-type *load-truename*))
        (< (file-write-date *load-truename*) *start-time*)))
 
-(defun warnings-marker ()
+(defun warnings-marker-path ()
   "Return the path of a file that exists while the cache has fasls whose sources caused warnings."
-  (merge-pathnames "warned" (project-fasls)))
+  (merge-pathnames "warned" (project-fasl-directory)))
 
 (defun make-warnings-marker ()
   (when *cache-directory*
-    (ensure-directories-exist (warnings-marker))
-    (with-open-file (out (warnings-marker) :direction :output :if-exists :append
-                                           :if-does-not-exist :create)
+    (ensure-directories-exist (warnings-marker-path))
+    (with-open-file (out (warnings-marker-path) :direction :output :if-exists :append
+                                                :if-does-not-exist :create)
       (declare (ignorable out)))))
 
 (defun call-counting-warnings (function)
@@ -203,9 +203,9 @@ and of ASDF's configuration directories. The options have ASDF's format."
                               (unless (typep warning sb-ext:*muffled-warnings*)
                                 (incf count)
                                 (make-warnings-marker)
-                                (print-trouble warning))))
+                                (print-condition-and-file warning))))
                    (error (lambda (condition)
-                            (print-trouble condition)
+                            (print-condition-and-file condition)
                             (setf *damaged-fasls-p* (or (typep condition 'sb-ext:invalid-fasl)
                                                         (loading-old-fasl-p)))
                             (return-from call-counting-warnings (values count t)))))
@@ -215,7 +215,7 @@ and of ASDF's configuration directories. The options have ASDF's format."
 (defun quit-after-failure ()
   "Delete the project's compiled files and exit. The status is 1 if these files were damaged and
 compiling again may help, otherwise 2."
-  (delete-fasls (project-fasls))
+  (delete-fasls (project-fasl-directory))
   (uiop:quit (if *damaged-fasls-p* 1 2)))
 
 (defun load-libraries (names)
@@ -224,11 +224,11 @@ and try again. If the second try fails, too, exit with status 2."
   (flet ((load-them () (mapc #'asdf:load-system names)))
     (handler-case (load-them)
       (error (condition)
-        (print-trouble condition)
-        (delete-fasls (library-fasls))
+        (print-condition-and-file condition)
+        (delete-fasls (library-fasl-directory))
         (handler-case (load-them)
           (error (condition)
-            (print-trouble condition)
+            (print-condition-and-file condition)
             (uiop:quit 2)))))))
 
 (defun load-project (system)
@@ -240,8 +240,8 @@ and try again. If the second try fails, too, exit with status 2."
 
 (defun load-strictly (system)
   "Compile and load SYSTEM like LOAD-PROJECT, but exit also after a warning in the project's files."
-  (when (and *cache-directory* (probe-file (warnings-marker)))
-    (delete-fasls (project-fasls)))
+  (when (and *cache-directory* (probe-file (warnings-marker-path)))
+    (delete-fasls (project-fasl-directory)))
   (load-libraries (libraries system))
   (let ((uiop:*compile-file-warnings-behaviour* :error)
         (uiop:*compile-file-failure-behaviour* :error))

@@ -23,8 +23,9 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:task-label #:all-tasks #:step-task #:start-trace #:stop-trace
                 #:plan-break-p #:why)
   (:import-from :ars-magna.rpl.tasks
-                #:task-label #:call-with-care #:arguments-misfit-text #:shape-of #:shape-text
-                #:waiting-parts #:text-of-waits #:advice-on-stillness)
+                #:task-label #:call-handling-trouble #:arguments-misfit-text #:lambda-list-shape
+                #:lambda-list-text
+                #:waiting-parts #:text-of-waits #:advice-on-endless-waits)
   (:import-from :ars-magna.rpl-robot #:rpl-runner
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use #:*robot-to-drive* #:note-robot-commanded)
@@ -46,12 +47,12 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measure-values
                 #:print-failures
-                #:run-experiment #:trial-under-way #:merge-results #:processors
-                #:settle-fingerprints
+                #:run-experiment #:current-slow-trial-text #:merge-results #:processors
+                #:freeze-file-digests
                 #:results-directory #:print-results #:save-result-pictures #:read-results
                 #:call-with-page-width
                 #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture
-                #:shard-directory #:directories-with-rows #:count-rows #:trials-in-shard-p
+                #:shard-directory #:directories-with-rows #:count-rows #:shard-has-trials-p
                 #:missing-shards #:check-same-code)
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string #:stream-read-char))

@@ -5,13 +5,13 @@
 ;;; Their servers, SWANK and SLYNK, ask a generic function of the same name for the contents of an
 ;;; object's window: a list of strings, (:value object) for what can be looked into, and (:newline).
 
-(defparameter *servers* '("SWANK/BACKEND" "SWANK-BACKEND" "SLYNK-BACKEND")
+(defparameter *editor-server-packages* '("SWANK/BACKEND" "SWANK-BACKEND" "SLYNK-BACKEND")
   "The packages of SLIME and SLY that may contain the inspector's generic function.")
 
 (defun inspectors ()
   "Return the names of the generic functions that inspectors of loaded editor servers call."
   (remove-duplicates
-   (loop for server in *servers*
+   (loop for server in *editor-server-packages*
          for symbol = (and (find-package server) (find-symbol "EMACS-INSPECT" server))
          when (and symbol (fboundp symbol)) collect symbol)))
 

@@ -22,7 +22,7 @@ all layers.")
   "True if users may call the function named SYMBOL but not SETF it. (The simulator's layers may.)"
   (and (fboundp `(setf ,symbol)) (not (settable-p symbol))))
 
-(defun reject-setting (symbol)
+(defun rejecting-setter (symbol)
   "Return the SETF function of SYMBOL, which cannot be set: a function that signals MISUSE."
   (lambda (value object)
     (declare (ignore value object))
@@ -36,29 +36,29 @@ all layers.")
       (unintern present face))
     (intern name face)))
 
-(defun read-only-symbol (symbol face)
+(defun ensure-read-only-reader (symbol face)
   "Return a symbol of the package FACE for the same function as SYMBOL, which users cannot SETF."
   (let ((reader (ensure-own-symbol face (symbol-name symbol))))
     (setf (fdefinition reader) (fdefinition symbol)
           (documentation reader 'function) (documentation symbol 'function)
-          (fdefinition `(setf ,reader)) (reject-setting symbol))
+          (fdefinition `(setf ,reader)) (rejecting-setter symbol))
     reader))
 
 (defun export-symbol (symbol face)
   "Make the package FACE export SYMBOL. If users must not SETF the function SYMBOL, export a symbol
 of FACE that names the same function."
   (when (addition-p symbol) (document-addition symbol))
-  (let ((shown (if (read-only-for-users-p symbol) (read-only-symbol symbol face) symbol)))
+  (let ((shown (if (read-only-for-users-p symbol) (ensure-read-only-reader symbol face) symbol)))
     (shadowing-import (list shown) face)
     (export (list shown) face)))
 
-(defun ensure-face (face documentation)
+(defun ensure-public-package (face documentation)
   "Return the package FACE, with DOCUMENTATION. It uses no other package."
   (let ((package (or (find-package face) (make-package face :use '()))))
     (setf (documentation package t) documentation)
     package))
 
-(defparameter *faces*
+(defparameter *public-packages*
   '((:ars . "The simulator as the manual describes it. It replaces CL:EQUAL and CL:MAP by extended
 versions.")
     (:nisp . "The Nisp dialect and the plan language. It replaces CL:LET, CL:LOOP and CL:IF by
@@ -67,8 +67,8 @@ extended versions."))
 
 (defun export-all-marked-names ()
   "Make the packages ARS and NISP export the symbols that are marked for them."
-  (loop for (face . documentation) in *faces*
-        do (unlock-package (ensure-face face documentation))
+  (loop for (face . documentation) in *public-packages*
+        do (unlock-package (ensure-public-package face documentation))
            (dolist (symbol (public-symbols face))
              (export-symbol symbol face))))
 
@@ -99,12 +99,12 @@ slot accessors and of tools are not locked."
 (defun lock-packages ()
   "Lock the simulator's packages, so that users cannot redefine its functions. Later definitions are
 not marked as the simulator's."
-  (setf *marking-p* nil)
+  (setf *loading-simulator-p* nil)
   (mapc #'lock-package (packages-to-lock)))
 
 (defun unlock-packages ()
   "Unlock the simulator's packages, so that the system can be loaded again."
-  (setf *marking-p* t)
+  (setf *loading-simulator-p* t)
   (mapc #'unlock-package (packages-to-lock)))
 
 ;;; The prompt is a separate system, which nothing here depends on.

@@ -96,7 +96,7 @@ symbols. If several packages extend a name, the last one is used. The names SETT
 (defun package-form (name options environment)
   "Return the macroexpansion that defines the package NAME with OPTIONS of DEFINE-USER-PACKAGE."
   (macroexpand-1 `(defpackage ,name
-                    ,@(user-package-options (title "define-user-package" name) options))
+                    ,@(user-package-options (definition-title "define-user-package" name) options))
                  environment))
 
 (addition define-user-package)

@@ -69,7 +69,7 @@ Return the moment before that."
 ;;; What has gone another way.
 
 (defun journals-alike-p (one other)
-  (and (= (length one) (length other)) (every #'run::alike-p one other)))
+  (and (= (length one) (length other)) (every #'run::alike-across-runs-p one other)))
 
 (defun accord-differences (way moments entries other-moments other-entries)
   "Return what is different, on the WAY with OTHER-MOMENTS and OTHER-ENTRIES, from a run with
@@ -83,7 +83,7 @@ MOMENTS and ENTRIES: a list of lists (way what where)."
      (list (list way :journal
                  (loop for index from 0
                        for one = (nth index entries) and other = (nth index other-entries)
-                       unless (run::alike-p one other) return (list one other)))))))
+                       unless (run::alike-across-runs-p one other) return (list one other)))))))
 
 (defmacro on-the-way (way &body body)
   "Return what BODY returns, a list of differences, or that there was an error on the WAY."

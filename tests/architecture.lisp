@@ -23,7 +23,7 @@
   (with-output-to-string (out)
     (loop with i = 0
           while (< i (length text))
-          do (let ((end (definitions::skip-text text i)))
+          do (let ((end (definitions::skip-non-code text i)))
                (cond (end (setf i end))
                      (t (write-char (char-downcase (char text i)) out)
                         (incf i)))))))
@@ -360,7 +360,7 @@ describes a slot."
 (defun users-symbol (symbol)
   "Return what users see of SYMBOL, which a layer exports."
   (find-symbol (symbol-name symbol)
-               (face-package (first (basics::mark-faces (basics::find-mark symbol))))))
+               (face-package (first (basics::mark-faces (basics::find-public-mark symbol))))))
 
 (test public.readers-only-read
   "A user who could set one would change a run without an entry in its journal."
@@ -388,8 +388,8 @@ describes a slot."
               "~S does not cite the manual" symbol)))))
 
 (test marks.export
-  (let ((symbol (intern "NEWLY-MARKED" :ars-magna.tests)) (marks basics::*marks*))
-    (unwind-protect (progn (let ((base:*marking-p* t)) (eval `(base:addition ,symbol)))
+  (let ((symbol (intern "NEWLY-MARKED" :ars-magna.tests)) (marks basics::*public-marks*))
+    (unwind-protect (progn (let ((base:*loading-simulator-p* t)) (eval `(base:addition ,symbol)))
                            (is (member symbol (external-symbols (find-package :ars-magna.tests)))))
-      (setf basics::*marks* marks)
+      (setf basics::*public-marks* marks)
       (unintern symbol :ars-magna.tests))))

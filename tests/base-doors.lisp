@@ -225,23 +225,23 @@
     (let ((path (uiop:ensure-directory-pathname (format nil "~A-new" place))) (troubles '()))
       (flet ((make-and-remove ()
                (handler-case (loop repeat 2000
-                                   do (when (base:make-new-directory path)
+                                   do (when (base:make-missing-directory path)
                                         (uiop:delete-empty-directory path)))
                  (error (condition) (push (princ-to-string condition) troubles)))))
         (mapc #'base:join-thread
               (loop repeat 2 collect (base:start-thread #'make-and-remove "directories")))
         (is (null troubles) "~A" (first troubles))
-        (is-true (base:make-new-directory path))
-        (is-false (base:make-new-directory path))
+        (is-true (base:make-missing-directory path))
+        (is-false (base:make-missing-directory path))
         (uiop:delete-empty-directory path)))))
 
 (test room.is-there-when-it-was-made
   (let ((octets (floor (sb-ext:bytes-consed-between-gcs) 2)))
     (base:collect-garbage-early octets)
-    (let ((collections (host:collections))
+    (let ((collections (host:collection-epoch))
           (made (loop repeat (floor octets 200000) collect (make-string 25000))))
       (is (plusp (length made)))
-      (is (eq collections (host:collections))))))
+      (is (eq collections (host:collection-epoch))))))
 
 ;;; Who waits leaves the terminal to a debugger. What SBCL says of that goes nowhere.
 
@@ -267,7 +267,7 @@
        (is (equal directory (base:base-directory)))
        (base:make-directories #p"a/b/")
        (is-true (uiop:directory-exists-p (merge-pathnames "a/b/" directory)))
-       (is-true (base:make-new-directory #p"a/c/"))
+       (is-true (base:make-missing-directory #p"a/c/"))
        (let ((file (base:path-of-name "a/b/words.txt")))
          (base:overwrite-file (lambda (out) (write-string "some words" out)) file "the text")
          (is (null (base:unusable-file-text file)))

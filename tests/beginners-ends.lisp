@@ -183,7 +183,7 @@
 
 (test plans.that-are-begun-while-no-ticks-pass-are-told
   (with-messages
-    (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* nil))
+    (let ((driver::*default-interface* nil) (time:*simulation* nil) (world:*world* nil))
       (run:simulator 'rover :display nil :rate :free)
       (unwind-protect
            (progn
@@ -209,7 +209,7 @@
 
 (test programs.that-end-before-their-commands-have-are-told
   "Commands to a live robot, also if it was stopped, except endless ones."
-  (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* nil))
+  (let ((driver::*default-interface* nil) (time:*simulation* nil) (world:*world* nil))
     (run:simulator 'rover :display nil :rate :free)
     (let ((world (run:simulation-world time:*simulation*)))
       (unwind-protect
@@ -224,7 +224,7 @@
 
 (test commands.that-cut-each-other-short-are-told-live-too
   (with-messages
-    (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* nil))
+    (let ((driver::*default-interface* nil) (time:*simulation* nil) (world:*world* nil))
       (run:simulator 'rover :display nil :rate 20)
       (unwind-protect
            (let ((rover (symbol-value 'rover)))

@@ -114,7 +114,7 @@
 
 (test commands-of-plans.outside-of-plans-name-those-of-programs
   (is-true (complains-p '(run:with-simulation (rover)
-                          (let ((driver::*interface* nil))
+                          (let ((driver::*default-interface* nil))
                             (driver:rpl-robot-go-forward 3)))
                         "use commands without RPL-, such as (robot-turn rover 1)")))
 

@@ -28,7 +28,7 @@
 ;;; Plans.
 
 (test calls.of-fluents-are-not-calls
-  (handler-case (ars-magna.rpl.language::reject-call 'driver:robot-stopped*)
+  (handler-case (ars-magna.rpl.language::reject-unknown-call 'driver:robot-stopped*)
     (base:misuse (condition)
       (is-true (has-words-p (princ-to-string condition) "robot-stopped*" "It is a fluent")))
     (:no-error (&rest values) (fail "~S" values))))

@@ -132,7 +132,7 @@
     (get-output-stream-string stream)
     (format console "one~%~A~%" (cli::paint "two" :red))
     (is (string= "two" (cli::last-held-back-line console)))
-    (cli::write-at-once (cli::overwrite-screen-code (format nil "a~%b")) console)
+    (cli::write-immediately (cli::overwrite-screen-code (format nil "a~%b")) console)
     (let ((shown (get-output-stream-string stream)))
       (is (search "a" shown))
       (is (null (search "one" shown))))

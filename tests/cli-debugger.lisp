@@ -261,7 +261,7 @@
   (loop with never = (base:make-semaphore "never")
         repeat 6000                     ; a minute, which only a hang reaches
         until *went-on*
-        do (base:wait-and-serve never 0.01)))
+        do (base:serve-and-wait-once never 0.01)))
 
 (test break.of-another-thread-is-answered-in-a-line-that-waits-for-it
   (let ((written (type-at-terminal "(ars-magna.tests::break-elsewhere-and-wait)" "nonsense" "turn"
@@ -359,10 +359,10 @@ asked goes."
                         (base:call-user-code (lambda () (error "Slipped.")) "a test"))))
                   "breaking")))
     (is-true (base:wait-on-semaphore asked 60))
-    (is (equal "the editor's debugger" (base:debugger-asking thread)))
+    (is (equal "the editor's debugger" (base:asking-debugger-text thread)))
     (base:end-inquiries (constantly t))
     (base:join-thread thread)
-    (is (null (base:debugger-asking thread)))
+    (is (null (base:asking-debugger-text thread)))
     (let ((texts (mapcar #'base:message-text (base:take-messages queue))))
       (is-true (find-if (lambda (text) (mentions-p text "disconnected; abort was chosen")) texts)
                "~A" texts)
@@ -395,6 +395,6 @@ asked goes."
 
 (test prompts.begin-in-the-package-of-who-opens-them
   (let ((*package* (find-package :ars-user)))
-    (is (eq *package* (cli:package-of-caller))))
+    (is (eq *package* (cli:package-for-new-prompt))))
   (let ((*package* (find-package :keyword)))
-    (is (eq (find-package :ars-user) (cli:package-of-caller)))))
+    (is (eq (find-package :ars-user) (cli:package-for-new-prompt)))))

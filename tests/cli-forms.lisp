@@ -128,7 +128,7 @@ ok."
            (uiop:with-temporary-file (:pathname file :stream out :type "lisp")
              (write-string text out)
              :close-stream
-             (cli::only-defines-p file))))
+             (cli::file-only-defines-p file))))
     (is-true (only-defines-p "(in-package :ars-user)
 (defmap pen (8 8)) (defrobot bo (pen (2 2) 0))"))
     (dolist (text '("(defmap pen (8 8))" "(defrobot bo (pen (2 2) 0)) turn 1" "(defrobot bo" ""

@@ -17,7 +17,7 @@
         do (loop for word in (uiop:split-string hint :separator " ,.:()\"")
                  when (and (< 2 (length word)) (string= word (string-upcase word))
                            (every #'alpha-char-p word) (string/= word "FILE"))
-                   do (is (member word (mapcar #'cli:line-name (cli:all-lines))
+                   do (is (member word (mapcar #'cli:line-name (cli:all-line-commands))
                                   :test (lambda (word name) (eql 0 (search word name))))
                           "~A in ~A" word hint))))
 

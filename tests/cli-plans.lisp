@@ -101,10 +101,10 @@
 
 (test plan.names-may-be-cut-short
   (is-true (answers-p '("dawdle succeeded: :DAWDLED") '("plan daw 1")))
-  (is (string= "PLAN" (cli:line-name (cli:find-line "plan"))))
-  (is (string= "PLANS" (cli:line-name (cli:find-line "plans"))))
-  (is (string= "STOP" (cli:line-name (cli:find-line "sto"))))
-  (is (string= "STOP-PLAN" (cli:line-name (cli:find-line "stop-")))))
+  (is (string= "PLAN" (cli:line-name (cli:find-line-command "plan"))))
+  (is (string= "PLANS" (cli:line-name (cli:find-line-command "plans"))))
+  (is (string= "STOP" (cli:line-name (cli:find-line-command "sto"))))
+  (is (string= "STOP-PLAN" (cli:line-name (cli:find-line-command "stop-")))))
 
 (test plan.alone-lists-what-one-would-start
   "Whole sentences, and no plan that is only a part of others of its package."
@@ -222,7 +222,7 @@
 (defun resume-for-a-tick ()
   "Let the paused live run go on, and wait until a tick has passed and the next one is waited for."
   (let ((passed (base:make-semaphore "passed")))
-    (time:call-scheduled (lambda () (base:signal-semaphore passed)) nil)
+    (time:schedule-call (lambda () (base:signal-semaphore passed)) nil)
     (time:resume)
     (base:wait-on-semaphore passed 60)
     (awaiting (time::custody-asleep-p

@@ -236,7 +236,7 @@ frobnicate")
                   collect i)))
 
 (test cli-readme.its-line-can-be-typed
-  (let ((cli::*lines* cli::*lines*)
+  (let ((cli::*line-commands* cli::*line-commands*)
         (*package* (find-package :ars-magna.cli)))
     (dolist (block (blocks-of-kind "lisp"))
       (load (make-string-input-stream (joined (page-block-lines block)))))

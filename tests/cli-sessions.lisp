@@ -35,8 +35,8 @@
     (setf (talk-session talk) session
           (talk-thread talk)
           (base:start-thread (lambda ()
-                               (cli:run-session-apart session simulation
-                                                      (robot:robot-name robot))
+                               (cli:run-additional-session session simulation
+                                                           (robot:robot-name robot))
                                (funcall turn))
                              "talk"))
     ;; When a line has been done, it listens.

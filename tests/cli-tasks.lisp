@@ -32,7 +32,7 @@
      (lambda ()
        (let ((task (ars-magna.rpl-robot:begin-plan 'ars-user::loiter 9)))
          (run:run-ticks 2)
-         (setf (ars-magna.rpl-robot::interface-hog ars-magna.rpl-robot::*interface*) task
+         (setf (ars-magna.rpl-robot::interface-hog ars-magna.rpl-robot::*default-interface*) task
                (ars-magna.rpl::task-state task) :running)
          (is (search "keeps the plans' thread busy" (type-here "trace-plans on")))
          (is (null ars-magna.rpl-robot:*trace-plans*))
@@ -49,6 +49,6 @@
    (lambda ()
      (ars-magna.rpl-robot:begin-plan 'ars-user::loiter 9)
      (run:run-ticks 2)
-     (is (equal '(1 2 3) (sort (copy-list (ars-magna.cli::choices :task-number nil ""))
+     (is (equal '(1 2 3) (sort (copy-list (ars-magna.cli::argument-choices :task-number nil ""))
                                #'<))))
    '(ars-user::butler)))

@@ -20,7 +20,7 @@
         (message (definitions::make-message :error '("again"))))
     (is (equal '(1 2 3 10 100 1000)
                (loop for count from 1 to 1001
-                     unless (cli::repeated-often-p message told) collect count)))))
+                     unless (cli::count-repeated-message message told) collect count)))))
 
 (defun failing-kicker-room ()
   (eval '(world:defkicker fail-often (thing) () (error "no ~A" (world:thing-name thing))))

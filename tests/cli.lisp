@@ -188,12 +188,12 @@ of lines, and the number of errors."
 ;;; Which command.
 
 (test names.may-be-full-or-cut-short
-  (let ((line (cli:find-line "go-forward")))
+  (let ((line (cli:find-line-command "go-forward")))
     (is (string= "GO-FORWARD" (cli:line-name line)))
     (dolist (name '("GO-F" "robot-go-forward" "Robot-Go-F"))
-      (is (string= "GO-FORWARD" (cli:line-name (cli:find-line name))) "~A" name)))
-  (is (string= "STOP" (cli:line-name (cli:find-line "stop"))))
-  (is (string= "OBJ-DESIG" (cli:line-name (cli:find-line "obj"))))
+      (is (string= "GO-FORWARD" (cli:line-name (cli:find-line-command name))) "~A" name)))
+  (is (string= "STOP" (cli:line-name (cli:find-line-command "stop"))))
+  (is (string= "OBJ-DESIG" (cli:line-name (cli:find-line-command "obj"))))
   (is-true (has-words-p (complaint "goto") "GOTO-DESIG" "GOTO-WALL"))
   (is-true (has-words-p (complaint "sttus") "STATUS"))
   (is-true (has-words-p (complaint "xyzzyplugh") "HELP")))
@@ -208,7 +208,7 @@ of lines, and the number of errors."
                   "CAM-ALIGN-PLACE" "CAM-REMOVE" "ALL-OBJ-DESIG" "ALL-PLACE-DESIG" "HAND-GRASP"
                   "HAND-UNGRASP" "HAND-GRASP-CHECK" "HAND-TRACK" "HAND-REMOVE" "BIN-OPEN"
                   "BIN-CLOSE"))
-    (is (string= name (cli:line-name (cli:find-line name))))))
+    (is (string= name (cli:line-name (cli:find-line-command name))))))
 
 (test lines.that-make-no-sense-say-what-they-take
   (is-true (has-words-p (complaint "turn") "TURN angle" "radians"))
@@ -245,7 +245,7 @@ of lines, and the number of errors."
 
 (test help.comes-from-the-definitions
   (let ((menu (joined (type-batch "help"))))
-    (dolist (line (cli:all-lines))
+    (dolist (line (cli:all-line-commands))
       (when (member (cli::line-family line) '(:general :seeing :running :moving))
         (is-true (search (cli:line-name line) menu) "~A" line))))
   (is-true (has-words-p (joined (type-batch "help go-forward")) "GO-FORWARD time" "ticks"

@@ -108,7 +108,7 @@
       (run:run-ticks 2)
       (ars-magna.rpl.seeing:step-task task)
       (let ((said (with-output-to-string (*standard-output*)
-                    (funcall (cli:line-action (cli:find-line "END-TASK"))
+                    (funcall (cli:line-action (cli:find-line-command "END-TASK"))
                              (cli:make-session)
                              (format nil "~D" (ars-magna.rpl:task-serial task))))))
         (is (mentions-p said "ends"))

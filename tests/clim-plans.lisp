@@ -123,7 +123,8 @@
       (let* ((pane (seen-plans window :timeline))
              (page (window::plan-look-page (window::plan-look-of pane)))
              (x (ars-magna.rpl-pictures::x-of-tick
-                 10 (ars-magna.rpl-pictures:page-scale page (window::content-width pane)))))
+                 10 (ars-magna.rpl-pictures:timeline-page-scale page
+                                                                (window::content-width pane)))))
         (is (mentions-p (window::hover-text pane x 60) "Tick 10"))
         (window::handle-click pane :left x 60)
         (is (equal '("rewind-to 10") (lines-given window)))
@@ -156,7 +157,8 @@
               for picture = (with-output-to-string (stream)
                               (canvas:with-svg (canvas stream)
                                 (canvas:with-canvas (canvas)
-                                  (ars-magna.rpl-pictures:draw-page canvas page :from from))
+                                  (ars-magna.rpl-pictures:draw-timeline-page canvas page :from
+                                                                             from))
                                 (values 640 400)))
               do (is (mentions-p picture (format nil "y=\"~D\"" (+ 16 from)))))))))
 
@@ -168,7 +170,7 @@
       (let ((page (window::plan-look-page (window::plan-look-of (seen-plans window :timeline)))))
         (flet ((names (width)
                  (let ((left (ars-magna.rpl-pictures::scale-left
-                              (ars-magna.rpl-pictures:page-scale page width))))
+                              (ars-magna.rpl-pictures:timeline-page-scale page width))))
                    (loop for row in (ars-magna.rpl-pictures::page-rows page)
                          collect (ars-magna.rpl-pictures::cut-row-label row (- left 20))))))
           (is (some (lambda (name) (search "..." name)) (names 200)))
@@ -214,7 +216,7 @@
       (is (trace-lit-p window)))))
 
 (test plan-switches.are-lines-of-the-prompt
-  (let ((names (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-lines))))
+  (let ((names (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-line-commands))))
     (dolist (name '("TRACE-PLANS" "END-TASK" "STEP-TASK" "PLAN-TREE" "WHY" "PLAN" "REWIND-TO"))
       (is (member name names :test #'string=)))))
 

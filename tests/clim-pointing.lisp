@@ -60,7 +60,7 @@
     (is (mentions-p (remove #\Newline (said-in window)) (make-string 300 :initial-element #\x)))))
 
 (defun robot-beneath (window thing-spot)
-  "Let the robot of WINDOW stand at THING-SPOT; return its display of the world, painted."
+  "Let the robot of WINDOW stand at THING-LABEL-TARGET; return its display of the world, painted."
   (apply #'robot:place-robot (first (run:simulation-robots)) (append thing-spot '(0)))
   (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
   (window::refresh window)
@@ -233,7 +233,7 @@ leads to both."
 
 (test pointing.every-offer-is-a-line-of-the-prompt
   (in-window (window robot)
-    (let ((names (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-lines))))
+    (let ((names (mapcar #'ars-magna.cli:line-name (ars-magna.cli:all-line-commands))))
       (painted-world window)
       (dolist (subject (append (coerce (display:snapshot-things (window::window-snapshot window))
                                        'list)

@@ -98,9 +98,9 @@
   (is (equal "Next> " (window::waiting-label 0)))
   (is (mentions-p (window::waiting-label 1) "1 line waits"))
   (is (mentions-p (window::waiting-label 2) "2 lines wait;"))
-  (is (mentions-p (cli::dropped-text 1) "1 line that waited was dropped"))
-  (is (mentions-p (cli::dropped-text 2) "2 lines that waited were dropped; the up arrow "))
-  (is (equal "" (cli::dropped-text 0))))
+  (is (mentions-p (cli::dropped-lines-text 1) "1 line that waited was dropped"))
+  (is (mentions-p (cli::dropped-lines-text 2) "2 lines that waited were dropped; the up arrow "))
+  (is (equal "" (cli::dropped-lines-text 0))))
 
 (test ahead.an-interrupt-says-what-it-drops
   "The line that is ended is one that never does."
@@ -354,7 +354,7 @@
 ;;; Menus.
 
 (test menus.hold-lines-by-their-families
-  (flet ((group (name) (window::prompt-menu-title (cli:find-line name))))
+  (flet ((group (name) (window::prompt-menu-title (cli:find-line-command name))))
     (is (equal '("Cameras" "Cameras" "Moving" "Plans" "Prompt" "Hands")
                (mapcar #'group '("OBJ-DESIG" "CAM-TRACK" "TURN" "PLAN" "QUIT" "HAND-GRASP"))))
     (loop for (family) in cli::*families*

@@ -194,7 +194,7 @@ each stop that the task is at, and of what tick that is, and of the tick."
        (let* ((simulation (time:current-simulation))
               (interface (window::plan-interface-of simulation))
               (look (window::watcher-plans (window::window-watcher window))))
-         (ars-magna.rpl-robot::call-holding
+         (ars-magna.rpl-robot::call-holding-plans
           (lambda () (ars-magna.host:call-listeners cli:*break-hooks*)) interface)
          (is (equal "(wait-time 3)"
                     (rpl:task-image-form

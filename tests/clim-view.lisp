@@ -38,8 +38,8 @@
 (test walls.are-a-pixel-wide-at-least
   "In a small picture of a big map, too."
   (let ((canvas:graphics-scale* 1/4))
-    (is (= 1 (display::wall-pixels 0 1)))
-    (is (= 10 (display::wall-pixels 0 40)))))
+    (is (= 1 (display::wall-width-in-pixels 0 1)))
+    (is (= 10 (display::wall-width-in-pixels 0 40)))))
 
 (test view.leaves-room-for-what-stands-at-its-edges
   "Numbers and scale bar cover nothing of a map that is in view as a whole."

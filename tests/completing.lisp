@@ -126,9 +126,9 @@
     ;; A name with a blank is in quotes.
     (is (every (lambda (text) (eql 0 (search "picture ~/" (remove #\" text))))
                (completions "picture ~/")))
-    (is (equal (length (cli::choices :file *completing* "~/"))
-               (length (cli::choices :file *completing*
-                                     (base:native-name (user-homedir-pathname))))))
+    (is (equal (length (cli::argument-choices :file *completing* "~/"))
+               (length (cli::argument-choices :file *completing*
+                                              (base:native-name (user-homedir-pathname))))))
     (is (equal (base:native-name (merge-pathnames "x.svg" (user-homedir-pathname)))
                (cli::token-value :file "~/x.svg")))))
 

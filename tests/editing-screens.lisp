@@ -166,9 +166,10 @@ KEYS have been pressed at Robot>."
                                  "x"))))
 
 (test screen.breaks-no-tables
-  (is (equal "one two three  four" (cli::broken-text "one two three  four" 10)))
-  (is (equal (format nil "  one two~%  three") (cli::broken-text "  one two three" 10)))
-  (is (equal (format nil "~%one~%~%two three") (cli::broken-text (format nil "~%one~%~%two three")
+  (is (equal "one two three  four" (cli::text-broken-at-blanks "one two three  four" 10)))
+  (is (equal (format nil "  one two~%  three") (cli::text-broken-at-blanks "  one two three" 10)))
+  (is (equal (format nil "~%one~%~%two three")
+             (cli::text-broken-at-blanks (format nil "~%one~%~%two three")
                                                                 10))))
 
 (test screen.has-another-prompt-without-losing-what-is-typed
@@ -223,13 +224,13 @@ KEYS have been pressed at Robot>."
     (is (equal (list (list (format nil "~Ax^[[1m" red) nil))
                (cli::break-into-rows red (format nil "x~C[1m" #\Escape) 0 20)))
     (is (equal (format nil "~Aone~%two" red)
-               (cli::broken-text (format nil "~Aone two" red) 10)))))
+               (cli::text-broken-at-blanks (format nil "~Aone two" red) 10)))))
 
 (test screen.breaks-what-follows-a-label
   "As in STATUS; a table is left as it is."
   (is (equal (format nil "Time:     Tick 0,~%idle, else")
-             (cli::broken-text "Time:     Tick 0, idle, else" 18)))
-  (is (equal "a: one  two  three four" (cli::broken-text "a: one  two  three four" 12))))
+             (cli::text-broken-at-blanks "Time:     Tick 0, idle, else" 18)))
+  (is (equal "a: one  two  three four" (cli::text-broken-at-blanks "a: one  two  three four" 12))))
 
 (test screen.of-no-terminal-is-as-it-was-written
   "Nothing is broken, or moved, where nobody edits lines."

@@ -148,8 +148,8 @@
 
 (test fingerprints.are-settled-in-a-saved-program
   (in-place
-    (let ((first (fingerprints-now)) (ars-magna.experiment::*digests-settled-p* nil))
-      (ars-magna.experiment:settle-fingerprints)
+    (let ((first (fingerprints-now)) (ars-magna.experiment::*file-digests-frozen-p* nil))
+      (ars-magna.experiment:freeze-file-digests)
       (delete-file (base:native-path (placed "a stroll.lisp")))
       (let ((experiment (ars-magna.experiment:find-experiment 'ars-user::stroll)))
         (flet ((now ()
@@ -184,7 +184,7 @@
       (loop for (trials script shards) in '((5 "run.sh" 5) (100 "run.sh" 16) (10000 "run.sh" 40)
                                             (1000000 "run.sh" 1000) (100 "job.sh" 1)
                                             (100000 "job.sh" 40) (10000000 "job.sh" 1000))
-            do (is (= shards (cli::default-shards experiment trials script))
+            do (is (= shards (cli::default-shard-count experiment trials script))
                    "~D trials by ~A" trials script)))))
 
 (test scripts.that-somebody-has-changed-are-kept

@@ -190,11 +190,11 @@ output, and what to the error output."
   (let ((cli::*interrupts-while-ending* nil) (log '()))
     (is (eql 130 (cli::call-until-interrupted
                   (lambda ()
-                    (unwind-protect (cli::take-interrupt)
-                      (cli::take-interrupt)
+                    (unwind-protect (cli::handle-or-count-interrupt)
+                      (cli::handle-or-count-interrupt)
                       (push :in-order log)))
                   (lambda ()
-                    (cli::take-interrupt)
+                    (cli::handle-or-count-interrupt)
                     (push :told log)
                     130))))
     (is (equal '(:told :in-order) log))))
@@ -206,7 +206,7 @@ output, and what to the error output."
                   (handler-bind ((cli::user-interrupt (lambda (condition)
                                                         (invoke-restart
                                                          (find-restart 'cli::go-on condition)))))
-                    (cli::take-interrupt)
+                    (cli::handle-or-count-interrupt)
                     7))
                 (constantly 130))))
     (is (null cli::*interrupts-while-ending*))))

@@ -246,7 +246,7 @@ nothing is."
 (test weak-pointers.do-not-hide-what-trials-change
   (let ((data (list 1)))
     (is-true (has-words-p (refusal-of-trials
-                           (base:make-weak data)
+                           (base:make-weak-reference data)
                            '(incf (first (sb-ext:weak-pointer-value *question-data*))))
                           "*question-data*"))
     (is (equal '(4) data))))

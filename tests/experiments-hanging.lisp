@@ -70,7 +70,7 @@
                      (- now (* 1000000 (+ seconds-before seconds)))
                      (svref (experiment::progress-under-way progress) 1)
                      (list condition 3 (- now (* 1000000 seconds)) 1003))
-               (experiment::longest-under-way progress))))
+               (experiment::slow-trial-text progress))))
       (is (search "trial 3 of all, seed 1003, has been under way for 60 s" (told 10 20 60)))
       (is (null (told 10 200 60)))
       (is (null (told 10 20 5))))))

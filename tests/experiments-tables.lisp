@@ -241,7 +241,7 @@
   (define-walk)
   (with-directories (directory)
     (ensure-directories-exist directory)
-    (experiment::call-with-directory
+    (experiment::call-with-locked-directory
      (lambda () (signals base:misuse (walk directory)))
      (experiment::directory-path directory))
     (walk directory :trials 1)

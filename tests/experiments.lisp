@@ -391,6 +391,6 @@
   (let ((progress (experiment::make-progress nil nil 10 2))
         (condition (first (experiment:experiment-conditions
                            (experiment:find-experiment 'question)))))
-    (is (null (experiment::longest-under-way progress)))
+    (is (null (experiment::slow-trial-text progress)))
     (setf (svref (experiment::progress-under-way progress) 2) (list condition 3 0))
-    (is (search "trial 3 of all" (experiment::longest-under-way progress)))))
+    (is (search "trial 3 of all" (experiment::slow-trial-text progress)))))

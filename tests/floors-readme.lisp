@@ -17,7 +17,7 @@
   (base:with-own-definitions ()
     (call-in-directory
      (lambda (directory)
-       (ars-worlds::draw-ward directory)
+       (ars-worlds::write-ward-files directory)
        (dolist (name '("ward.yaml" "ward.pgm" "ward.svg" "ward-coarse.svg"))
          (is (equalp (floors::read-octets (merge-pathnames name directory) 10000000)
                      (floors::read-octets (project-file (format nil "worlds/floors/~A" name))

@@ -16,7 +16,7 @@
                             (driver:begin-plan 'pace-for-forks)
                             ,@body)
        (run:stop-simulator (robot:find-robot 'rover))
-       (setf driver::*interface* nil time:*simulation* nil))))
+       (setf driver::*default-interface* nil time:*simulation* nil))))
 
 (defun await-tick (tick)
   (is-true (await (lambda () (<= tick (run:simulation-tick))))))
@@ -87,7 +87,7 @@
              (is-true (await (lambda () (<= 60 (run:simulation-tick)))))
              (is (equal fork (reverse *numbers-drawn*)))))
       (run:stop-simulator (robot:find-robot 'rover))
-      (setf driver::*interface* nil time:*simulation* nil))))
+      (setf driver::*default-interface* nil time:*simulation* nil))))
 
 (defvar *semaphores* #() "What a plan says when it has begun a long step, and what ends that.")
 

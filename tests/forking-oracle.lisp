@@ -37,8 +37,8 @@
       (tasks::node '(tasks::form tasks::names tasks::states))
       (tasks::procedure '(tasks::lambda-list tasks::source))
       ((satisfies base:environment-p)
-       (remove-if-not #'host:fixed-slot-p (mapcar #'sb-mop:slot-definition-name
-                                                  (sb-mop:class-slots (class-of object)))
+       (remove-if-not #'host:interpreter-only-slot-p (mapcar #'sb-mop:slot-definition-name
+                                                             (sb-mop:class-slots (class-of object)))
                       :key #'string))
       (tasks::plan-runner '(tasks::warned))
       (fluents:entity '(first))
@@ -116,7 +116,7 @@ with (where . parent) of the first path to it."
   "Return what happened to the plans of SIMULATION, as text, or NIL if nobody notes that."
   (let ((trace (run::call-in-simulation simulation
                                 (lambda ()
-                                  (and driver::*interface*
+                                  (and driver::*default-interface*
                                        (rpl:plan-trace (driver:rpl-runner)))))))
     (and trace (with-output-to-string (stream) (rpl:write-trace trace stream)))))
 

@@ -6,7 +6,7 @@
 (defun outside-things ()
   "Return a list of things that no fork can have of its own."
   (list (make-broadcast-stream) *standard-output* (base:current-thread) (base:make-lock "lock")
-        (base:make-semaphore "semaphore") (base:make-weak (list 1))))
+        (base:make-semaphore "semaphore") (base:make-weak-reference (list 1))))
 
 (test unforkable.is-named-with-where-it-was-found
   (run:with-simulation (rover :seed 1)

@@ -19,7 +19,7 @@
 ;;; Averages.
 
 (defun as-sample (numbers)
-  (stats::sample 'as-sample 'numbers numbers))
+  (stats::checked-sample 'as-sample 'numbers numbers))
 
 (defun sample-variance (numbers)
   (stats::variance-of (as-sample numbers)))
@@ -28,7 +28,7 @@
   (stats::mean-standard-error (as-sample numbers)))
 
 (defun sample-quantile (numbers share)
-  (stats::sorted-quantile (stats::sort-sample (as-sample numbers)) (stats:as-written share)))
+  (stats::sorted-quantile (stats::sort-sample (as-sample numbers)) (stats:share-as-double share)))
 
 (test averages.as-fisher-has-them
   (is-printed 3 '("20.933") (stats:mean *maize*))

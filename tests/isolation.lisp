@@ -63,7 +63,7 @@
 
 (defun stop-all ()
   "End what runs live in resident worlds, and its plans."
-  (when driver::*interface* (driver::close-interface driver::*interface*))
+  (when driver::*default-interface* (driver::close-interface driver::*default-interface*))
   (dolist (world (resident-worlds))
     (when (world:world-timeline world) (stop-run (world:world-timeline world)))))
 

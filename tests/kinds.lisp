@@ -199,9 +199,10 @@
 
 (test records.export-the-readers-that-say-so
   (is (equal '((export '(call-echo)) (base:addition call-pitch))
-             (base:reader-marks '((pitch 0 fixnum "high" :addition)
-                                              (loud-p nil boolean) (echo nil t :export))
-                                            (lambda (slot) (base:symbolicate 'call- slot))))))
+             (base:reader-export-forms '((pitch 0 fixnum "high" :addition)
+                                                     (loud-p nil boolean) (echo nil t :export))
+                                                   (lambda (slot)
+                                                     (base:symbolicate 'call- slot))))))
 
 (test records.reject-what-makes-no-sense
   (dolist (slot '(pitch (pitch) (pitch 0) (pitch 0 :writable)

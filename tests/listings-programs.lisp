@@ -248,7 +248,7 @@ does not ask whether the hand got into the bin."
   "A robot runs live, and stays so after QUIT."
   (with-listings ("5-2-robbie")
     (destructuring-bind (load-form simulator-form cli-form) (listing-forms "a-running")
-      (let ((time:*simulation* nil) (world:*world* nil) (driver::*interface* nil)
+      (let ((time:*simulation* nil) (world:*world* nil) (driver::*default-interface* nil)
             (robbie (symbol-value (own 'robbie))))
         (is-true (eval load-form))
         (progv (list (own 'robot)) (list robbie)

@@ -128,7 +128,8 @@
                  (when stopped
                    (go-past (+ x (* dx at)) (+ y (* dy at)) dx dy))))
              (go-past (x y dx dy)
-               (multiple-value-bind (x y) (robot::line-past-corner world world:+opaque+ x y dx dy)
+               (multiple-value-bind (x y) (robot::line-point-beyond-corner world world:+opaque+ x y
+                                                                           dx dy)
                  (unless (or (null x) (visit (world:map-index map x y)))
                    (walk x y dx dy)))))
       (robot::do-rays (dx dy) (angle (/ pi 2) 50)

@@ -196,7 +196,7 @@
 
 (test ownership.live-three-drivers-take-turns
   "A plan in its own thread, a continuation in the simulator's, and this thread."
-  (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* nil)
+  (let ((driver::*default-interface* nil) (time:*simulation* nil) (world:*world* nil)
         (*standard-output* (make-broadcast-stream)))
     (with-messages
       (unwind-protect

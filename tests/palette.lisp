@@ -86,7 +86,7 @@ VISIONS."
 (defun robot-look (position)
   "Return how a robot is drawn without colours: the dashes of its ring, and how its head is."
   (let ((canvas:in-color* nil))
-    (list (display::nth-dashes position) (display::hollow-head-p position))))
+    (list (display::nth-dashes position) (display::hollow-arrowhead-p position))))
 
 (defun way-look (position)
   "Return what is drawn of a way without colours, but for where its dashes are."

@@ -188,7 +188,7 @@ room."
       (flet ((best (&rest boxes) (display::best-box snapshot '() boxes (display::index-boxes '()))))
         (is (equal '(70 12 110 23) (best '(70 12 110 23))))
         (is (equal '(20 40 60 51) (best '(70 12 110 23) '(20 40 60 51))))))
-    (is (find '(97 84 137 95) (display::name-boxes 100 100 3 40) :test #'equal))))
+    (is (find '(97 84 137 95) (display::candidate-name-boxes 100 100 3 40) :test #'equal))))
 
 (test names.of-robots-are-written-on-thin-walls-if-need-be
   "Those of things are left out there."
@@ -259,7 +259,7 @@ room."
               (entries (display::legend-entries snapshot '())))
          (is (< 4 bar))
          (loop for (layers edge) in `(((:scale-bar :legend) ,bar) ((:legend) 4))
-               for arrangement = (display::arrange snapshot layers entries)
+               for arrangement = (display::smallest-arrangement snapshot layers entries)
                do (is (< edge (display::arrangement-legend-left arrangement) (+ edge 20)))
                   (is (<= (+ edge (display::columns-width
                                    (display::arrangement-columns arrangement)))

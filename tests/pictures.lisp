@@ -99,7 +99,7 @@
   (let ((x (display:robot-image-x robot)) (y (display:robot-image-y robot)))
     (display:with-halo ((display::layer-ink :ranges) :dashes (display::layer-dashes :ranges))
       (canvas:draw-segments canvas canvas:draw-gcontext*
-                            (display:pixels-of (list x y (+ x metres) y))))))
+                            (display:points-to-pixels (list x y (+ x metres) y))))))
 
 (defun range-marks (view robot)
   (display::glyph-mark-at view (+ 1 (display:robot-image-x robot)) (display:robot-image-y robot)
@@ -294,7 +294,7 @@
            (canvas:graphics-scale* 10))
       (flet ((spared-p (layer x y)
                (some (lambda (box) (display::overlap-p box (display::box-around x y 1)))
-                     (display::marked-boxes snapshot (list layer)))))
+                     (display::layer-mark-boxes snapshot (list layer)))))
         (is-true (spared-p :planned-way 80 30))
         (is-true (spared-p :tracks 70 50))
         (is (null (spared-p :tracks 80 30)))))))

@@ -184,7 +184,7 @@
 (test words.of-vertical-lines-stand-evenly-about-their-place
   (loop for lines in '(("a") ("a" "b") ("a" "b" "c"))
         do (let ((places (loop for text in (drawing (canvas)
-                                             (plots::write-vertical-lines canvas 50 90 lines))
+                                             (plots::draw-vertical-text-lines canvas 50 90 lines))
                                collect (chart-number "x" text))))
              (is (= (length lines) (length places)))
              (is (= (* 54 (length lines)) (reduce #'+ places)))

@@ -72,7 +72,7 @@
                                       (9999999 nil "1e7") (-2d-7 nil "-2e-7") (1d308 nil "1e308")
                                       (2d-308 nil "2e-308") (5d-324 nil "4.941e-324")
                                       (-1d-323 nil "-9.881e-324") (-1/100000000 t "-1e-6 %"))
-        do (is (string= text (plots:figure-text value :percent percent)) "~S" value)))
+        do (is (string= text (plots:rounded-number-text value :percent percent)) "~S" value)))
 
 (defun axis-marks-of (&rest points)
   "Return what is written along both axes of a chart of POINTS, x y x y ...."

@@ -95,7 +95,7 @@
              (base:message-text (definitions::make-message :message
                                                     (list (base:phrase "at ~A ~A" 17 'red))))
              (base:safe-text 17)
-             (tasks:shape-text '(a &optional b))
+             (tasks:lambda-list-text '(a &optional b))
              (tasks::form-text '(17 18))
              (handler-case (base:reject-use "not ~S ~A" 17 'red)
                (base:misuse (condition) (princ-to-string condition)))))))

@@ -125,10 +125,10 @@
                                  (push-away robot 4 2)
                                  (rpl:wait-time 100))
                         (rpl:wait-time tick))
-            (setf free (and (null (rpl:valve-owner (constructs::whereabouts-valve
-                                                    (constructs::whereabouts))))
-                            (null (rpl:fluent-value (constructs::whereabouts-stays
-                                             (constructs::whereabouts))))))
+            (setf free (and (null (rpl:valve-owner (constructs::stay-registry-valve
+                                                    (constructs::stay-registry))))
+                            (null (rpl:fluent-value (constructs::stay-registry-stays
+                                             (constructs::stay-registry))))))
             (stay-at robot :far 1)))
         (is (eq t free))
         (is (null (fluents::fluent-first-watcher robot)))

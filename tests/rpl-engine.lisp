@@ -24,7 +24,7 @@
       (is (eq :waiting (rpl:task-state task)))
       (is (rpl:runner-idle-p runner))
       (is (equal (list task) (rpl:plan-runner-tasks runner)))
-      (rpl:post runner `((:set ,f :go)))
+      (rpl:post-entry runner `((:set ,f :go)))
       (is (not (rpl:runner-idle-p runner)))
       (is (rpl:apply-next-batch runner))
       (is (not (rpl:apply-next-batch runner)))
@@ -37,7 +37,7 @@
   "Posts are applied between reactions, when the task has reached its wait."
   (with-runner (runner)
     (let* ((moved (fluent)) (heard 0)
-           (command (lambda () (rpl:post runner `((:pulse ,moved))))))
+           (command (lambda () (rpl:post-entry runner `((:pulse ,moved))))))
       (rpl:start-plan runner (rpl:interp-lambda ()
                                (rpl:n-times 300
                                  (funcall command)
@@ -112,7 +112,7 @@
                                     (base:start-thread
                                      (lambda ()
                                        (dotimes (i posts)
-                                         (rpl:post runner `((:set ,f ,(1+ i))))
+                                         (rpl:post-entry runner `((:set ,f ,(1+ i))))
                                          (base:signal-semaphore posted)))
                                      "poster")))))
       (rpl:start-plan runner (rpl:interp-lambda ()
@@ -134,14 +134,14 @@
 (test post.keeps-the-order-of-posting
   (with-runner (runner)
     (let ((f (fluent)) (seen '()))
-      (dotimes (i 10) (rpl:post runner `((:set ,f ,i))))
+      (dotimes (i 10) (rpl:post-entry runner `((:set ,f ,i))))
       (loop while (rpl:apply-next-batch runner) do (push (rpl:fluent-value f) seen))
       (is (equal '(0 1 2 3 4 5 6 7 8 9) (reverse seen))))))
 
 (test post.trouble-in-it-becomes-a-message
   (with-runner (runner)
-    (rpl:post runner '((:set 3 4)))
-    (rpl:post runner (lambda () (error "oops")))
+    (rpl:post-entry runner '((:set 3 4)))
+    (rpl:post-entry runner (lambda () (error "oops")))
     (is (rpl:apply-next-batch runner))
     (is (rpl:apply-next-batch runner))
     (is (= 2 (length (base:take-messages))))))

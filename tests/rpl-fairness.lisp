@@ -17,7 +17,7 @@
       (rpl:start-plan runner (rpl:interp-lambda () (loop until stop (itself 1))))
       (dolist (f fluents) (start-listener runner f (lambda () (incf heard))))
       (is (eq :budget (rpl:react-to-all runner)))
-      (dolist (f fluents) (rpl:post runner `((:pulse ,f))))
+      (dolist (f fluents) (rpl:post-entry runner `((:pulse ,f))))
       (is (eq :budget (rpl:react-to-all runner)))
       (is (= 100 heard))
       (setf stop t)
@@ -33,7 +33,7 @@
                                         (rpl:pulse ping))))
       (start-listener runner f (lambda () (setf heard t)))
       (rpl:react-to-all runner)
-      (rpl:post runner `((:pulse ,f)))
+      (rpl:post-entry runner `((:pulse ,f)))
       (rpl:react-to-all runner)
       (is-true heard))))
 

@@ -45,7 +45,7 @@
   (with-fitter (:clean t)
     (let ((task (waiting-plan)))
       (base:join-thread (base:start-thread (lambda ()
-                                             (let ((driver::*interface* nil))
+                                             (let ((driver::*default-interface* nil))
                                                (driver:end-plan task)))
                                            "ends a plan"))
       (run:run-ticks 1)

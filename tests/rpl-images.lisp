@@ -88,7 +88,7 @@
 (test timeline.fits-a-narrow-place
   (let* ((runner (seen-until 30))
          (page (ars-magna.rpl-pictures:make-timeline-page (rpl:bars (rpl:plan-trace runner)) 100))
-         (scale (ars-magna.rpl-pictures:page-scale page 360)))
+         (scale (ars-magna.rpl-pictures:timeline-page-scale page 360)))
     (is (= 0 (ars-magna.rpl-pictures:page-start page)))
     (is (= 22 (ars-magna.rpl-pictures:page-end page)))
     (is (null (ars-magna.rpl-pictures:tick-at 20 scale)))

@@ -94,7 +94,7 @@
       ((0 1 2))
       (3 (rpl:set-value (base:roll-element fluents dice) (base:chance .5 dice)))
       (4 (rpl:pulse (base:roll-element fluents dice)))
-      (5 (rpl:post runner `((:pulse ,(base:roll-element fluents dice)))))
+      (5 (rpl:post-entry runner `((:pulse ,(base:roll-element fluents dice)))))
       ((6 7) (when (and parts (base:chance .3 dice))
                (rpl:stop-plan runner (base:roll-element parts dice)))))))
 

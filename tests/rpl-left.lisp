@@ -102,7 +102,7 @@ after that."
                            (rpl:wait-time 1)
                            (rpl:seq (driver:rpl-init-robot fitter)
                                     (rpl:wait-time 0))))
-      (let ((old driver::*interface*))
+      (let ((old driver::*default-interface*))
         (run:run-ticks 2)
         (let ((driver::*reacting-interface* old))
           (handler-case (driver:rpl-robot-turn 1)

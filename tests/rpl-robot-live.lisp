@@ -15,7 +15,7 @@
 (defmacro awaiting (fact) `(is-true (await (lambda () ,fact)) "~S" ',fact))
 
 (defun call-live (function rate)
-  (let ((driver::*interface* nil) (time:*simulation* nil))
+  (let ((driver::*default-interface* nil) (time:*simulation* nil))
     (with-messages
       (let* ((simulation (run:fresh-simulation '(fitter) :seed 3))
              (time:*simulation* simulation)
@@ -25,7 +25,7 @@
           (driver:rpl-init-robot robot)
           (unwind-protect (funcall function simulation)
             (run:stop-clock simulation)
-            (driver::close-interface driver::*interface*)))))))
+            (driver::close-interface driver::*default-interface*)))))))
 
 (defmacro live ((simulation &key (rate :free)) &body body)
   "Run BODY while a fresh SIMULATION of FITTER runs live, at RATE."
@@ -57,7 +57,7 @@ tick."
                     (rpl:wait-time 2))
                   :done))))
     (is (typep (run-as-plan (rpl:fail :class :oops)) 'rpl:plan-failure))
-    (awaiting (null (driver::interface-thread driver::*interface*)))))
+    (awaiting (null (driver::interface-thread driver::*default-interface*)))))
 
 (test live.the-plan-has-its-own-thread
   (live (simulation)
@@ -133,7 +133,7 @@ tick."
                     (base:function-with-specials
                      (lambda ()
                        (setf result (multiple-value-list (run-as-plan (rpl:wait-for go)))))
-                     'driver::*interface* 'time:*simulation* 'base:*message-queue*)
+                     'driver::*default-interface* 'time:*simulation* 'base:*message-queue*)
                     "runner")))
       (awaiting (find-if (lambda (text) (search "wait for events that neither" text))
                          (mapcar #'base:message-text (base:take-messages))))
@@ -145,7 +145,7 @@ tick."
 (test live.a-stopped-simulator-ends-the-waiting
   (live (simulation)
     (let ((ended (base:make-semaphore "ended")) (state nil)
-          (interface driver::*interface*))
+          (interface driver::*default-interface*))
       (base:start-thread
        (base:function-with-specials
         (lambda ()
@@ -153,7 +153,7 @@ tick."
                                      (loop (driver:rpl-robot-turn 1)
                                            (rpl:wait-for driver:robot-stopped*)))))
           (base:signal-semaphore ended))
-        'driver::*interface* 'time:*simulation* 'base:*message-queue*)
+        'driver::*default-interface* 'time:*simulation* 'base:*message-queue*)
        "runs a plan")
       (awaiting (> (run:simulation-tick simulation) 20))
       (run:stop-clock simulation)
@@ -166,7 +166,7 @@ tick."
 
 (defun call-resident (function)
   "Call FUNCTION while the resident FITTER runs live."
-  (let ((driver::*interface* driver::*interface*)
+  (let ((driver::*default-interface* driver::*default-interface*)
         (time:*simulation* time:*simulation*)
         (*standard-output* (make-broadcast-stream)))
     (with-messages
@@ -228,11 +228,11 @@ tick."
 (test live.run-plan-not-in-the-simulators-thread
   (live (simulation)
     (let ((trouble nil) (answered (base:make-semaphore "answered"))
-          (interface driver::*interface*))
+          (interface driver::*default-interface*))
       (command:robot-turn fitter .1
                           (lambda (&rest ignore)
                             (declare (ignore ignore))
-                            (let ((driver::*interface* interface))
+                            (let ((driver::*default-interface* interface))
                               (handler-case (run-as-plan 1)
                                 (base:misuse (condition) (setf trouble condition))))
                             (base:signal-semaphore answered)))
@@ -306,7 +306,7 @@ tick."
   (live (simulation)
     (let ((task (driver:begin-plan (rpl:interp-lambda () (rpl:wait-time 1000000)))))
       (awaiting (eq :waiting (rpl:task-state task)))
-      (setf (driver::interface-hog driver::*interface*) task)
+      (setf (driver::interface-hog driver::*default-interface*) task)
       (is (eq :fine (run-as-plan (turned .1) :fine)))
       (driver:end-plan task)
       (awaiting (rpl:task-over-p task)))))
@@ -319,7 +319,7 @@ tick."
           (awaiting (eq :running (rpl:task-state task)))
           (run:stop-clock simulation)
           (awaiting (rpl:task-over-p task))
-          (awaiting (null (driver::interface-thread driver::*interface*)))
+          (awaiting (null (driver::interface-thread driver::*default-interface*)))
           (run:start-clock simulation :rate :free)
           (is (eq :fine (run-as-plan (turned .1) :fine))))))))
 
@@ -340,7 +340,7 @@ tick."
 (test live.a-thread-that-was-ended-leaves-no-trace
   "Its plan ends; the others go on in another one."
   (live (simulation)
-    (let* ((interface driver::*interface*)
+    (let* ((interface driver::*default-interface*)
            (other (driver:begin-plan (rpl:interp-lambda ()
                                        (loop (rpl:wait-time 1)))))
            (task (driver:begin-plan (rpl:interp-lambda ()
@@ -368,7 +368,7 @@ tick."
                     (rpl:evap-protect (rpl:seq (base:signal-semaphore begun)
                                                (loop (rpl:wait-time 1)))
                                       (setf cleaned t)))))
-              'driver::*interface* 'time:*simulation* 'base:*message-queue*)
+              'driver::*default-interface* 'time:*simulation* 'base:*message-queue*)
              "runs a plan"))
       (is-true (base:wait-on-semaphore begun 30))
       (base:interrupt-thread thread (lambda () (throw 'out nil)))

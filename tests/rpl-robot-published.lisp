@@ -9,13 +9,13 @@
 (defun call-with-half-changed-plans (function)
   "Call FUNCTION with an interface whose plans wait for tick 51, as last published, and the run.
 What the runner has cannot be read."
-  (let ((driver::*interface* nil))
+  (let ((driver::*default-interface* nil))
     (run:call-with-simulation
      (lambda ()
        (driver:rpl-init-robot (symbol-value 'fitter))
        (driver:begin-plan (rpl:make-plan '(rpl:wait-time 50)))
        (run:run-ticks 1)
-       (let* ((interface driver::*interface*)
+       (let* ((interface driver::*default-interface*)
               (timers (tasks::runner-timers (driver::interface-runner interface)))
               (heap (tasks::timers-heap timers)))
          (setf (tasks::timers-heap timers) (make-array 1 :adjustable t :fill-pointer t
@@ -79,13 +79,13 @@ that breaks is stopped there until the semaphore is signalled."
    (lambda (answered)
      (live (simulation)
        (driver:begin-plan (rpl:interp-lambda () (break "look")))
-       (let ((interface driver::*interface*))
-         (awaiting (driver::in-debugger-p interface))
+       (let ((interface driver::*default-interface*))
+         (awaiting (driver::plans-in-debugger-p interface))
          (let ((text (trouble-of #'driver:print-plans)))
            (is-true (has-words-p text "stopped in a debugger" "plans of" "print-plans t t")
                     "~A" text))
          (base:signal-semaphore answered)
-         (awaiting (not (driver::in-debugger-p interface))))))))
+         (awaiting (not (driver::plans-in-debugger-p interface))))))))
 
 ;;; A live run that is started inside of a headless one.
 
@@ -120,7 +120,7 @@ that breaks is stopped there until the semaphore is signalled."
         (let ((task (driver:begin-plan (rpl:make-plan '(rpl:seq (rpl:wait-time 800) :fine)))))
           (awaiting (eq :waiting (rpl:task-state task)))
           (run:stop-clock simulation)
-          (awaiting (null (driver::plans-thread driver::*interface*)))
+          (awaiting (null (driver::plans-thread driver::*default-interface*)))
           (is-false (rpl:task-over-p task))
           (funcall go-on simulation)
           (awaiting (rpl:task-over-p task))
@@ -147,11 +147,11 @@ that breaks is stopped there until the semaphore is signalled."
 
 (test threads-of-plans.that-leave-end-what-was-closed-meanwhile
   "Who closes plans leaves that to their thread, if there is one: it may just be leaving."
-  (let ((driver::*interface* nil))
+  (let ((driver::*default-interface* nil))
     (run:call-with-simulation
      (lambda ()
        (driver:rpl-init-robot (symbol-value 'fitter))
-       (let ((interface driver::*interface*)
+       (let ((interface driver::*default-interface*)
              (task (driver:begin-plan (rpl:make-plan '(rpl:wait-time 50)))))
          (setf (driver::interface-thread interface) (base:current-thread))
          (driver::close-interface interface)

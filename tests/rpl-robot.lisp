@@ -39,8 +39,8 @@
     (let ((simulation (time:current-simulation)))
       (dotimes (count 3)
         (driver:rpl-init-robot fitter)
-        (is (equal (list driver::*interface*) (run::simulation-participants simulation))))
-      (driver::close-interface driver::*interface*)
+        (is (equal (list driver::*default-interface*) (run::simulation-participants simulation))))
+      (driver::close-interface driver::*default-interface*)
       (is (null (run::simulation-participants simulation))))))
 
 (test ticks.in-which-plans-only-wait-cost-nothing

@@ -128,8 +128,8 @@ HOW says: of a fluent that is pulsed twice before, then set and pulsed four time
                                  (loop (rpl:wait-for view)
                                        (push (rpl:plan-time) heard)))))
       (rpl:react-to-all runner)
-      (rpl:post runner `((:set ,f 1) (:pulse ,f)))
-      (rpl:post runner `((:pulse ,f)))
+      (rpl:post-entry runner `((:set ,f 1) (:pulse ,f)))
+      (rpl:post-entry runner `((:pulse ,f)))
       (loop while (rpl:apply-next-batch runner) do (rpl:react-to-all runner))
       (is (= 2 (length heard)) "What happens at one instant is one thing."))))
 

@@ -83,7 +83,7 @@ function and its arguments."
 
 (test plans.left-while-their-thread-begins-get-another
   (with-yard ()
-    (let ((driver::*interface* nil))
+    (let ((driver::*default-interface* nil))
       (start-dray)
       (driver:rpl-init-robot (symbol-value 'dray))
       ;; A tick that found the plan would begin its thread.
@@ -111,7 +111,7 @@ function and its arguments."
   (with-yard ()
     (let* ((old (start-and-pass 3)) (found nil) (thread nil)
            (custody (time:timeline-custody (run:simulation-timeline old))))
-      (coming-between (run::end-rewound (end old new)
+      (coming-between (run::end-rewound-run (end old new)
                  (funcall end old new)
                  (setf thread (base:start-thread
                                (lambda () (setf found (run::find-current-robot 'dray)))
@@ -126,7 +126,7 @@ function and its arguments."
 (test rewind.of-a-run-that-is-stopped-meanwhile-is-not-live
   (with-yard ()
     (let ((old (start-and-pass 3)))
-      (coming-between (run::end-rewound (end old new)
+      (coming-between (run::end-rewound-run (end old new)
                  (funcall end old new)
                  (run:stop-simulator old))
         (run:rewind 1))
@@ -233,7 +233,7 @@ function and its arguments."
   (with-yard ()
     (let* ((old (start-and-pass 3)) (thread nil)
            (custody (time:timeline-custody (run:simulation-timeline old))))
-      (coming-between (run::end-rewound (end old new)
+      (coming-between (run::end-rewound-run (end old new)
                  (funcall end old new)
                  (setf thread (base:start-thread
                                (lambda ()
@@ -291,7 +291,7 @@ function and its arguments."
     (is (eq :left (coming-between (fluents::leave-home (leave home)
                                     (interrupt-here)
                                     (funcall leave home))
-                    (interrupted (fluents::call-at-home runner (constantly 1))))))
+                    (interrupted (fluents::call-with-owned-home runner (constantly 1))))))
     (is (null (fluents::home-holder runner)))))
 
 ;;; Threads that were woken, or started, and interrupted before they could say so.
@@ -307,8 +307,8 @@ function and its arguments."
 
 (test plans.a-thread-whose-start-was-given-up-leaves-them
   (with-yard ()
-    (let ((driver::*interface* nil) (called nil))
+    (let ((driver::*default-interface* nil) (called nil))
       (start-dray)
       (driver:rpl-init-robot (symbol-value 'dray))
-      (driver::call-as-plans-thread driver::*interface* (lambda () (setf called t)))
+      (driver::call-as-plans-thread driver::*default-interface* (lambda () (setf called t)))
       (is-false called))))

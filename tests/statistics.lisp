@@ -272,7 +272,7 @@
 ;; What is told of the end of a track, and notes the tick.
 (defstruct stopwatch (end nil))
 
-(defmethod robot:track-ended ((stopwatch stopwatch) code designator)
+(defmethod robot:notify-track-end ((stopwatch stopwatch) code designator)
   (declare (ignore code designator))
   (setf (stopwatch-end stopwatch) (run:simulation-tick)))
 

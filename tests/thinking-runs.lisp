@@ -194,7 +194,7 @@
         (run:set-thinking :real simulation)
         (awaiting (not (in-ticks-p)))
         (run:set-thinking '(:charged :budget 5) simulation)
-        (awaiting (null (driver::interface-thread driver::*interface*)))
+        (awaiting (null (driver::interface-thread driver::*default-interface*)))
         (awaiting (in-ticks-p))
         (setf stop t)
         (awaiting (rpl:task-over-p task))))))
@@ -211,7 +211,7 @@
       (is (eq :evaporated (rpl:task-state thinker))))))
 
 (test live-thinking.is-an-option-of-the-simulator
-  (let ((driver::*interface* nil) (time:*simulation* nil) (world:*world* world:*world*))
+  (let ((driver::*default-interface* nil) (time:*simulation* nil) (world:*world* world:*world*))
     (with-messages
       (dolist (mode *thinking-modes*)
         (unwind-protect

@@ -213,7 +213,7 @@
                                                   (time:notify-later
                                                    (time:timeline-of s)
                                                    (lambda () (record :notification)))))
-                   (time:call-scheduled (lambda () (record :event)) nil :simulation s)
+                   (time:schedule-call (lambda () (record :event)) nil :simulation s)
                    (time:post (make-errand (lambda () (record :request))) s)
                    (run:add-observer (lambda (s) (declare (ignore s)) (record :observer)) s)
                    (run:run-ticks 1 s)))))))
@@ -235,8 +235,8 @@
 (defun wait-for-event (simulation timer)
   "Wait until TIMER ticks of the live SIMULATION have passed; true if that came to be."
   (let ((passed (base:make-semaphore "passed")))
-    (time:call-scheduled (lambda () (base:signal-semaphore passed)) nil
-                         :timer timer :simulation simulation)
+    (time:schedule-call (lambda () (base:signal-semaphore passed)) nil
+                        :timer timer :simulation simulation)
     (base:wait-on-semaphore passed 60)))
 
 (defmacro with-live ((simulation rate) &body body)
@@ -258,12 +258,12 @@
     (with-live (s :free)
       (time:pause s)
       (let ((stepped (base:make-semaphore "stepped")))
-        (time:call-scheduled (lambda () (base:signal-semaphore stepped)) nil :simulation s)
+        (time:schedule-call (lambda () (base:signal-semaphore stepped)) nil :simulation s)
         (is (= 0 (time:ask s (lambda () (run:simulation-tick s)))))
         (run:step-ticks 1 s)
         (is-true (base:wait-on-semaphore stepped 60))
-        (time:call-scheduled (lambda () (base:signal-semaphore stepped)) nil :timer 50
-                                                                             :simulation s)
+        (time:schedule-call (lambda () (base:signal-semaphore stepped)) nil :timer 50
+                                                                            :simulation s)
         (time:resume s)
         (is-true (base:wait-on-semaphore stepped 60))))))
 
@@ -271,7 +271,7 @@
   (with-bare-simulation (s)
     (with-live (s 1/100)
       (flet ((tick () (time:ask s (lambda () (run:simulation-tick s)))))
-        (time:call-scheduled (lambda () nil) nil :timer 50 :simulation s)
+        (time:schedule-call (lambda () nil) nil :timer 50 :simulation s)
         (tick)
         (time:pause s)
         (let ((before (tick)))

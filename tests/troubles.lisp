@@ -188,7 +188,7 @@
       (is (= 1000 (length errors)))
       (is (equal '("1" "1000") (mapcar #'princ-to-string
                                        (list (first errors) (first (last errors)))))))
-    (base:forget-errors base:*message-queue* (constantly t))
+    (base:remove-errors-of-runs base:*message-queue* (constantly t))
     (is (null (base:user-code-errors-in base:*message-queue* (constantly t))))))
 
 (test warnings.are-shown-that-ask-what-is-so-in-the-end

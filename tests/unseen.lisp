@@ -334,7 +334,7 @@ output."
                 (call-with-files #'compiled
                                  '("(def-interp-proc idle () (wait-for no-such-fluent*))")))))
     (is-true (has-words-p told "WAIT-FOR" "undefined variable" "NO-SUCH-FLUENT*"))
-    (is (not (search "ONE-FLUENT" told)) "~A" told)))
+    (is (not (search "CHECKED-CONDITION" told)) "~A" told)))
 
 ;;; Names of attributes and things, once in a run.
 

@@ -152,7 +152,7 @@
     (is-true (has-words-p advice "the end of the command probe-fail" "(define-fluents probe"
                           "(define-outcome (probe-fail)" "(:pulse my-fluent*))")
              "~A" advice)
-    (handler-case (progn (language::warn-of-unknown (list name 0)) (fail "no warning"))
+    (handler-case (progn (language::warn-of-unknown-call (list name 0)) (fail "no warning"))
       (warning (warning) (is (search advice (princ-to-string warning)) "~A" warning)))
     (is-true (tells-p "the end of the command probe-fail"
                       (handler-bind ((warning #'muffle-warning))

@@ -58,7 +58,7 @@ succeeded, the ticks that took, the plan's value, and a digest."
   "Return the middles of the cells of MAP in which things may be hidden."
   (loop for x from .5d0 below (world:map-width map)
         append (loop for y from .5d0 below (world:map-height map)
-                     when (ars-worlds::in-the-open-p map x y)
+                     when (ars-worlds::clear-of-obstacles-p map x y)
                        collect (list x y))))
 
 (test hide-thing.keeps-away-from-walls-and-furniture

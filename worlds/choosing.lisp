@@ -11,7 +11,7 @@
 
 ;;; The world.
 
-(defun leave-trolley (name places)
+(defun add-trolley (name places)
   "Put a trolley NAME, which blocks robots, at one of PLACES, points of the world. NAME and the
 world's seed decide where. People move the trolley among PLACES at times. Return the trolley."
   (make-new-thing name (cons *world* (roll-element places (dice-for name)))
@@ -21,8 +21,8 @@ world's seed decide where. People move the trolley among PLACES at times. Return
 
 (defun leave-trolleys ()
   "Put a trolley near the library and another near the meeting room of OFFICE."
-  (leave-trolley 'book-trolley '((72.5 34.5) (84.5 24.5) (76.5 4.5)))
-  (leave-trolley 'tea-trolley '((52.5 34.5) (44.5 26.5) (56.5 20.5))))
+  (add-trolley 'book-trolley '((72.5 34.5) (84.5 24.5) (76.5 4.5)))
+  (add-trolley 'tea-trolley '((52.5 34.5) (44.5 26.5) (56.5 20.5))))
 
 ;;; The plan chooses ways by WHICH: :FIRST, :SECOND, :ANY (at random) or :BEST (by rollouts).
 

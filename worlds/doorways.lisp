@@ -18,12 +18,12 @@
 (defun point-as-list (pt)
   (list (pt-x pt) (pt-y pt)))
 
-(defun free-of-walls-p (map x y)
+(defun no-wall-at-p (map x y)
   "True if (X,Y) is inside MAP and its cell has no wall."
   (not (wall-at-p map x y)))
 
 (defun doorway-at (map x y)
-  (let ((place (and (free-of-walls-p map x y)
+  (let ((place (and (no-wall-at-p map x y)
                     (ars-magna.world:cell-type (map-cell map x y)))))
     (and place
          (eq (ars-magna.world:place-type place) (find-place-type 'doorway))
@@ -42,7 +42,7 @@
 leads from DOOR to the side where the robot is."
   (destructuring-bind ((x y) (dx dy)) (list (middle-of door) direction)
     (let ((room (loop for length from 1 to 3
-                      while (free-of-walls-p map (+ x (* length dx)) (+ y (* length dy)))
+                      while (no-wall-at-p map (+ x (* length dx)) (+ y (* length dy)))
                       finally (return length))))
       ;; The point keeps clear of the first wall.
       (list (+ x (* (max 1 (- room 1.5)) dx)) (+ y (* (max 1 (- room 1.5)) dy))))))

@@ -150,10 +150,10 @@ then take the step NEXT with the last designator. After LOOKS searches take the 
 
 (defun grasp-target (errand designator)
   (track-and-continue errand designator
-                      (lambda (errand) (grasp-tracked errand designator))
+                      (lambda (errand) (grasp-tracked-thing errand designator))
                       #'check-target))
 
-(defun grasp-tracked (errand designator)
+(defun grasp-tracked-thing (errand designator)
   "Grasp DESIGNATOR, which the camera tracks. If the thing is too heavy, leave it: it may be wrong."
   (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
     (continuation (err hand designator)
@@ -162,11 +162,11 @@ then take the step NEXT with the last designator. After LOOKS searches take the 
           (stop-camera-track errand
                              (lambda (errand)
                                (if (eq err :insufficient-strength)
-                                   (leave-heavy errand)
+                                   (leave-heavy-thing errand)
                                    (take-next-step errand err #'open-for-target #'check-target
                                                    :hand-grasping)))))))))
 
-(defun leave-heavy (errand)
+(defun leave-heavy-thing (errand)
   "Look for something lighter. End ERRAND after three heavy things."
   (if (= 3 (incf (errand-too-heavy errand)))
       (end-errand errand :insufficient-strength)

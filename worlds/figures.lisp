@@ -25,11 +25,11 @@ the map to draw; NIL is the whole map.")
   "Return the path of the file NAME in worlds/. Create the directory of the file if there is none."
   (ensure-directories-exist (merge-pathnames name *figures-directory*)))
 
-(defun pictures-of (experiment)
+(defun pictures-directory (experiment)
   (worlds-path (format nil "pictures/~(~A~)/" experiment)))
 
 (defun save-page-pictures (experiment results names)
-  (dolist (file (save-result-pictures results (pictures-of experiment)))
+  (dolist (file (save-result-pictures results (pictures-directory experiment)))
     (unless (member (pathname-name file) names :test #'string=)
       (delete-file file))))
 
@@ -53,7 +53,7 @@ the map to draw; NIL is the whole map.")
 
 ;;; Worlds.
 
-(defun save-watson ()
+(defun save-picture-of-watson ()
   "Save a picture of ROBBIE in WATSON, with the plant that its camera tracks."
   (with-simulation (robbie :seed 1 :clean t)
     (let ((camera (robot-camera robbie 0)))
@@ -65,7 +65,7 @@ the map to draw; NIL is the whole map.")
       (run-ticks 20))
     (save-picture robbie (worlds-path "watson.svg") :layers (cons :wedges *picture-layers*))))
 
-(defun save-layers ()
+(defun save-picture-of-layers ()
   "Save a picture of DOT in TINY that shows the layers of pictures."
   (with-simulation (dot :seed 4)
     (let ((camera (robot-camera dot 0)))
@@ -96,7 +96,7 @@ the map to draw; NIL is the whole map.")
 
 ;;; One fetch.
 
-(defun save-fetch ()
+(defun save-pictures-of-fetch ()
   "Save pictures of a fetch: what happened where, and the tasks of its plan over time."
   (with-simulation (marvin :seed 7 :journal t)
     (let ((*trace-plans* t))
@@ -161,11 +161,11 @@ the map to draw; NIL is the whole map.")
 
 (defun save-quick-figures ()
   "Save the pictures that take only seconds. Tests compare the shipped pictures with these."
-  (save-watson)
-  (save-layers)
-  (draw-ward (worlds-path "floors/"))
+  (save-picture-of-watson)
+  (save-picture-of-layers)
+  (write-ward-files (worlds-path "floors/"))
   (save-picture-of-rollouts)
-  (save-fetch))
+  (save-pictures-of-fetch))
 
 (defun save-figures ()
   "Draw the floor to import, run the shipped experiments, put their tables into worlds/README.md,
@@ -181,7 +181,7 @@ and save their pictures."
                (save-page-pictures experiment results names)))
     (loop for (experiment condition trials part) in *page-ways*
           do (save-ways-picture experiment condition
-                                (merge-pathnames "ways.svg" (pictures-of experiment))
+                                (merge-pathnames "ways.svg" (pictures-directory experiment))
                                 :trials trials :part part))
     (with-open-file (out page :direction :output :if-exists :supersede :external-format :utf-8)
       (format out "~{~A~%~}" lines))))

@@ -70,7 +70,7 @@ the robot has received more commands, another program has taken it over."
                          (ars-magna.base:argument-type-text 'continuation))
                    (list (or (null start) (number-list-p start 3)) ":start" start
                          "a list (x y heading) of numbers, or NIL"))
-  (check-limits 'robot-go-to tolerance patience))
+  (check-tolerance-and-patience 'robot-go-to tolerance patience))
 
 (defun robot-go-to (robot x y continuation &key start (tolerance 1) (patience 40))
   "Make ROBOT go to the point (X,Y) of its map, or the nearest free point, to within TOLERANCE
@@ -88,7 +88,7 @@ Signals WRONG-ARGUMENT if no free point is near (X,Y), or an argument is invalid
     (grab-resource robot (robot-simulation robot))
     (continue-journey (make-journey :robot robot :asked (commands-received robot) :me me :goal goal
                                     :tolerance tolerance :patience patience
-                                    :camera (widest-of robot)
+                                    :camera (camera-with-widest-view robot)
                                     :continuation continuation))
     (values)))
 
@@ -114,7 +114,7 @@ OTHERWISE. If the command was interrupted or another program took over the robot
           ((zerop (decf (journey-steps journey))) (end-journey journey :gave-up))
           ((eq :door (first step))
            (face-point journey (middle-of (second step))
-                       (lambda () (look-for-doorway journey (second step) (third step)))))
+                       (lambda () (drive-through-doorway journey (second step) (third step)))))
           (t (drive-to-point journey (second step) #'continue-journey)))))
 
 ;;; Driving.
@@ -147,11 +147,11 @@ CONTINUATION gets an error code or NIL, and the robot."
         (continuation (err robot)
           (continue-after-command journey err
                                   (lambda () (funcall next journey))
-                                  (lambda () (note-obstacle journey)))))))
+                                  (lambda () (continue-after-obstacle journey)))))))
 
 ;;; Obstacles.
 
-(defun note-obstacle (journey)
+(defun continue-after-obstacle (journey)
   "Continue JOURNEY after something has stopped the robot: correct the reckoning by a wall, or bar
 the cells of a thing. Every third time, turn away and drive two metres first."
   (let ((me (journey-me journey)))
@@ -168,7 +168,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
 
 ;;; Doorways: a camera guides the robot there, as in PASS-DOORWAY.
 
-(defun look-for-doorway (journey cell beyond)
+(defun drive-through-doorway (journey cell beyond)
   "Drive the robot of JOURNEY, which faces the doorway CELL, through the doorway to BEYOND."
   (labels ((blindly ()
              (drive-to-point journey (middle-of cell)
@@ -176,7 +176,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
            (look ()
              (camera-get-all-place-designators (journey-camera journey) 'doorway
                (continuation (err camera designators)
-                 (let ((doorway (nearest-ahead designators)))
+                 (let ((doorway (nearest-designator-ahead designators)))
                    (if (and doorway (not (must-end-p journey err)))
                        (go-to-doorway journey doorway beyond)
                        (continue-after-command journey err #'blindly #'blindly)))))))
@@ -196,7 +196,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
           (when (taken-over-p journey) (untrack-doorway journey doorway))
           (continue-after-command journey err
                                   (lambda () (follow-to-doorway journey doorway beyond))
-                                  (lambda () (note-obstacle journey))))))))
+                                  (lambda () (continue-after-obstacle journey))))))))
 
 ;; In a doorway the camera may lose its track before a CAMERA-UNTRACK begins, which then would fail.
 ;; After the run has ended nothing is tracked, and no command can be issued.
@@ -211,11 +211,11 @@ the cells of a thing. Every third time, turn away and drive two metres first."
   "Drive the robot of JOURNEY to the designator DOORWAY, which its camera tracks."
   (robot-set-speed (robot-to-command journey) driving-speed*
     (continuation (err robot speed)
-      (flet ((follow () (go-to-tracked journey doorway beyond)))
+      (flet ((follow () (go-to-tracked-doorway journey doorway beyond)))
         (when (must-end-p journey err) (untrack-doorway journey doorway))
         (continue-after-command journey err #'follow #'follow)))))
 
-(defun go-to-tracked (journey doorway beyond)
+(defun go-to-tracked-doorway (journey doorway beyond)
   "Drive the robot of JOURNEY, whose speed is set, to the designator DOORWAY."
   (robot-goto-designator (robot-to-command journey) (journey-camera journey)
     (continuation (err robot camera designator)
@@ -224,7 +224,7 @@ the cells of a thing. Every third time, turn away and drive two metres first."
                               (lambda () (leave-doorway journey beyond))
                               (lambda ()
                                 (if (eq err :robot-blocked)
-                                    (note-obstacle journey)
+                                    (continue-after-obstacle journey)
                                     (leave-doorway journey beyond)))))))
 
 (defun leave-doorway (journey beyond)

@@ -71,7 +71,7 @@ stopped the robot, else NIL."
   (outcome (rpl-camera-get-all-place-designators camera type)
            (vref camera-input* camera) (vref camera-designators* camera)))
 
-(defun nearest-ahead (designators)
+(defun nearest-designator-ahead (designators)
   "Return the one of DESIGNATORS nearest to the robot's heading, within .7 radians, or NIL."
   (flet ((off (designator) (abs (angle-difference (!_angle designator) 0))))
     (let ((best (first (sort (copy-list designators) #'< :key #'off))))
@@ -107,7 +107,7 @@ error code, or NIL when the robot is there."
     (outcome (rpl-camera-align-robot camera)
              (vref camera-moved* camera) (vref camera-movement-error* camera))
     (n-times 3 UNTIL found
-      (setf found (nearest-ahead (look-for-places camera 'doorway))))
+      (setf found (nearest-designator-ahead (look-for-places camera 'doorway))))
     found))
 
 (def-interp-proc in-doorway-p ()
@@ -146,7 +146,7 @@ error code, or NIL when the robot is there."
 
 ;;; Whole ways.
 
-(defun widest-of (robot)
+(defun camera-with-widest-view (robot)
   "Return ROBOT's camera with the widest field of view, or NIL if ROBOT has no camera."
   (let ((cameras (coerce (robot-cameras robot) 'list)))
     (and cameras
@@ -155,7 +155,7 @@ error code, or NIL when the robot is there."
 
 (defun widest-camera ()
   "Return the index of the camera that has the widest field of view on the plan's robot."
-  (camera-index (widest-of (rpl-robot))))
+  (camera-index (camera-with-widest-view (rpl-robot))))
 
 (def-interp-proc take-step-of-way (me camera step)
   "Do STEP, a step that NEXT-STEP has returned, with the robot of the reckoning ME. Return :WALL or
@@ -189,7 +189,7 @@ for a thing to move away; every third time turn and drive off."
                                    (every (lambda (point) (number-list-p point 2)) points))
                               name points "a list of points (x y), such as ((3 4) (5 6))")))
 
-(defun check-limits (operator tolerance patience)
+(defun check-tolerance-and-patience (operator tolerance patience)
   "Signal WRONG-ARGUMENT for the first argument that OPERATOR cannot use."
   (check-arguments operator
                    (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
@@ -205,7 +205,7 @@ argument is invalid."
   (check-arguments 'travel-to
                    (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
                    (list (number-list-p point 2) "point" point "a list (x y) of numbers of metres"))
-  (check-limits 'travel-to tolerance patience)
+  (check-tolerance-and-patience 'travel-to tolerance patience)
   (evap-protect (travel-step-by-step me point tolerance patience camera)
                 (show-way me '())))
 

@@ -84,16 +84,16 @@ position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING.
 
 ;;; The way shown in pictures.
 
-(defun robot-of (me)
+(defun robot-of-reckoning (me)
   (ars-magna.robot:odometer-robot (reckoning-odometer me)))
 
 (defun show-way (me points)
   "Show POINTS in pictures as the planned way of the robot of the reckoning ME; () shows none."
-  (publish-way (robot-of me) points))
+  (publish-way (robot-of-reckoning me) points))
 
 ;;; Obstacles. The chart has the cells that are barred now, the reckoning has the tick until when.
 
-(defun bar-on-chart (me)
+(defun update-barred-cells (me)
   "On the chart of the reckoning ME, bar the cells that ME has noted as barred, and no others, at a
 cost of at most 90 for each cell. Remove the shown way, because it may no longer be the best."
   (show-way me '())
@@ -105,10 +105,10 @@ cost of at most 90 for each cell. Remove the shown way, because it may no longer
                  (push (list cell cost) sums)))
     (free-all-cells chart)
     (loop for (cell cost) in sums
-          when (apply #'free-of-walls-p (chart-map chart) cell)
+          when (apply #'no-wall-at-p (chart-map chart) cell)
             do (bar-cell chart cell cost))))
 
-(defun bar-cells (me point cost until)
+(defun bar-cells-around (me point cost until)
   "Add COST to the cell at POINT, and an eighth of COST to the cells around, until the tick UNTIL."
   (loop for dx from -1 to 1
         do (loop for dy from -1 to 1
@@ -116,23 +116,23 @@ cost of at most 90 for each cell. Remove the shown way, because it may no longer
                                 (if (= 0 dx dy) cost (floor cost 8))
                                 until)
                           (reckoning-barred me))))
-  (bar-on-chart me))
+  (update-barred-cells me))
 
 (defun bar-cell-ahead (me)
   "Remember for 200 ticks that something stands directly ahead of the robot of the reckoning ME."
-  (bar-cells me (point-ahead me .6) 40 (+ 200 (simulation-tick))))
+  (bar-cells-around me (point-ahead me .6) 40 (+ 200 (simulation-tick))))
 
 (defun current-chart (me)
   "Return the chart of ME. Cells that were barred until a past tick are free again."
   (flet ((must-end-p (entry) (< (third entry) (simulation-tick))))
     (when (some #'must-end-p (reckoning-barred me))
       (setf (reckoning-barred me) (remove-if #'must-end-p (reckoning-barred me)))
-      (bar-on-chart me)))
+      (update-barred-cells me)))
   (reckoning-chart me))
 
 (defun way-shown-to-p (me end)
   "True if pictures show a way of the robot of the reckoning ME that leads to the point END."
-  (let ((point (first (last (robot-planned-way (robot-of me))))))
+  (let ((point (first (last (robot-planned-way (robot-of-reckoning me))))))
     (and point (= (first point) (pt-x end)) (= (second point) (pt-y end)))))
 
 (defun show-way-to (me chart goal)
@@ -153,7 +153,7 @@ cost of at most 90 for each cell. Remove the shown way, because it may no longer
 (defun wall-crossed (map from to)
   "FROM and TO are points close together. If the face of a wall is between them, return two values:
 the face's axis (0 for x, 1 for y) and its coordinate. Else return NIL."
-  (when (and (apply #'free-of-walls-p map from) (not (apply #'free-of-walls-p map to)))
+  (when (and (apply #'no-wall-at-p map from) (not (apply #'no-wall-at-p map to)))
     (loop for axis in '(0 1)
           for a = (floor (nth axis from)) and b = (floor (nth axis to))
           when (/= a b) do (return (values axis (max a b))))))

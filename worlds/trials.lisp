@@ -14,22 +14,22 @@
 
 ;;; Before.
 
-(defun in-the-open-p (map x y)
+(defun clear-of-obstacles-p (map x y)
   "True if the cell of MAP at (X,Y) and its neighbours have no wall and nothing that blocks robots."
   (loop for dx from -1 to 1
         always (loop for dy from -1 to 1
-                     always (and (free-of-walls-p map (+ x dx) (+ y dy))
+                     always (and (no-wall-at-p map (+ x dx) (+ y dy))
                                  (notany #'thing-obsmove-p
                                          (things-at *world* (+ x dx) (+ y dy)))))))
 
-(defun point-in-the-open (dice)
+(defun random-clear-point (dice)
   "Return the middle, a list (x y), of a random cell of the current world without walls or obstacles
 around. DICE choose the cell; all such cells are equally likely."
   (let ((map (ars-magna.world:world-map *world*)))
     (loop repeat 10000
           for x = (+ .5 (roll-index (map-width map) dice))
           for y = (+ .5 (roll-index (map-height map) dice))
-          when (in-the-open-p map x y)
+          when (clear-of-obstacles-p map x y)
             return (list x y)
           finally (error "~A has hardly any cell without walls or obstacles around. Use a ~
                           wider map." map))))
@@ -37,7 +37,7 @@ around. DICE choose the cell; all such cells are equally likely."
 (defun hide-thing (name descriptor)
   "Put a new thing NAME with the attributes of DESCRIPTOR on the floor of the current world,
 away from walls and obstacles, and return it. NAME and the world's seed decide where the thing is."
-  (make-new-thing name (cons *world* (point-in-the-open (dice-for name))) descriptor))
+  (make-new-thing name (cons *world* (random-clear-point (dice-for name))) descriptor))
 
 (defun make-restless (thing probability)
   "Push THING .9 metres in a random direction, with PROBABILITY in each tick from now on. A

@@ -70,7 +70,7 @@
                     :title "ward" :scale scale)
   (undefine 'map 'pictured-ward))
 
-(defun draw-ward (directory)
+(defun write-ward-files (directory)
   "Write ward.yaml and its image into DIRECTORY, and pictures of two maps imported from ward.yaml."
   (eval `(defmap ward-drawing (130 100 :frame (1/10 -13/2 -5 0)) ,@(ward-clauses)))
   (flet ((file (name) (merge-pathnames name directory)))

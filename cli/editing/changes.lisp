@@ -94,7 +94,8 @@ of the cursor. The function returns the new text, the new position and the kille
 
 (define-key *editing-keys* (:control-w) (text point)
   "Kill the text before the cursor, back to a blank."
-  (kill-from-text text (word-start-before text point (lambda (char) (not (blank-p char)))) point))
+  (kill-from-text text (word-start-before text point (lambda (char) (not (blank-character-p char))))
+                  point))
 
 (define-key *editing-keys* (:meta-rubout) (text point)
   "Kill the word before the cursor."

@@ -46,7 +46,7 @@ Control-C and similar keys are signals instead.")
     (suspend-process)
     (redraw-after-suspension stream)))
 
-(defvar *while-typing* nil
+(defvar *typing-callback* nil
   "NIL, or a function that is called several times a second while a line is typed.")
 
 ;;; Octets.
@@ -55,10 +55,10 @@ Control-C and similar keys are signals instead.")
   "Return the next octet of STREAM, as a character, or NIL at the end."
   (cond ((not (empty-queue-p (edited-ahead stream))) (pop-octet (edited-ahead stream)))
         (t (when (typep (typed-octets stream) 'descriptor-stream)
-             (loop until (octets-within-p (typed-octets stream) (if *while-typing* 0.05 0.25))
+             (loop until (octets-within-p (typed-octets stream) (if *typing-callback* 0.05 0.25))
                    do (redraw-if-resized (edited-console stream))
                       (when (shiftf *continued-p* nil) (redraw-after-suspension stream))
-                      (when *while-typing* (funcall *while-typing*))))
+                      (when *typing-callback* (funcall *typing-callback*))))
            (handler-case (read-char (typed-octets stream) nil)
              (stream-error () nil)))))
 
@@ -188,9 +188,9 @@ ends the line; other values are ignored.")
   "Insert TEXT, which was pasted. Report if the last lines are taken for output and left out."
   (let ((count (count-output-lines text)))
     (when (plusp count)
-      (write-fresh (format nil "~D line~:P after the last pasted prompt ~:*~[~;is~:;are~] taken ~
+      (write-on-fresh-line (format nil "~D line~:P after the last pasted prompt ~:*~[~;is~:;are~] taken ~
                                 for output and left out.~%" count)
-                   (edited-console stream))))
+                           (edited-console stream))))
   (insert-string stream (without-pasted-output text)))
 
 (defun enter-chosen-line (stream text)

@@ -23,7 +23,7 @@ appended after a newline, or NIL at the end of the stream."))
   (vector-push-extend #\Newline text)
   (loop for char across line do (vector-push-extend char text)))
 
-(defun make-growing-text (text start more)
+(defun make-growing-text-stream (text start more)
   "Return a stream of TEXT from START on. MORE returns further lines, as in GROWING-TEXT."
   (make-instance 'growing-text :text (extensible-text text) :position start :more more))
 
@@ -113,7 +113,7 @@ GROWING is the text before that line, and the entry has a fill pointer; else GRO
   "Add TEXT, a typed line, to HISTORY, unless TEXT is blank or equals the newest entry."
   (save-entry history)
   (setf (history-growing history) nil)
-  (unless (or (every #'blank-p text) (equal text (first (history-entries history))))
+  (unless (or (every #'blank-character-p text) (equal text (first (history-entries history))))
     (push text (history-entries history))
     (setf (history-unsaved-p history) t)))
 

@@ -92,7 +92,7 @@
 (defun escape-sequence-of-key (key)
   "Return the escape sequence that a terminal sends for KEY, a keyword; NIL if there is none."
   (let ((code (find key *key-codes* :key #'second)) (name (string-downcase key)))
-    (cond (code (escape "~A" (first code)))
+    (cond (code (format-escape-code "~A" (first code)))
           ((eq key :meta-rubout) (format nil "~C~C" +escape+ #\Rubout))
           ((starts-with-subseq "meta-" name) (format nil "~C~A" +escape+ (subseq name 5))))))
 

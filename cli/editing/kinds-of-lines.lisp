@@ -6,14 +6,14 @@
   "True if a comment begins in TEXT at POSITION: with ;, or with # between blanks or line ends."
   (flet ((blank-at-p (position)
            (or (not (array-in-bounds-p text position))
-               (blank-p (char text position)))))
+               (blank-character-p (char text position)))))
     (case (char text position)
       (#\; t)
       (#\# (and (blank-at-p (1- position)) (blank-at-p (1+ position)))))))
 
 (defun comment-p (text)
   "True if TEXT has nothing to run: it is blank, or a comment that begins with ; or a separate #."
-  (let ((start (position-if-not #'blank-p text)))
+  (let ((start (position-if-not #'blank-character-p text)))
     (or (null start) (comment-at-p text start))))
 
 ;; Comments #| ... |#, which may end in the line, are handled elsewhere; #FOO is a word like others.
@@ -24,7 +24,7 @@
       (and (eql #\# (char-at start))
            first
            (not (find first "|!"))
-           (not (blank-p first))
+           (not (blank-character-p first))
            (or (not (alpha-char-p first))
                (find second "(\"")
                (and (char-equal #\b first) (find second "01+-"))
@@ -35,7 +35,7 @@
 ;; As reading 205 says.
 (defun lisp-p (text)
   "True if TEXT is Lisp: it begins with a parenthesis, a form such as #'car, or Nisp's !>."
-  (let ((start (position-if-not #'blank-p text)))
+  (let ((start (position-if-not #'blank-character-p text)))
     (or (find (char text start) "()")
         (sharp-form-p text start)
         (eql start (search "!>" text)))))
@@ -45,14 +45,14 @@
 (defun skip-blanks (text start)
   "Return the position of the first word in TEXT from START on; the length of TEXT if only blanks or
 a comment follow."
-  (let ((position (position-if-not #'blank-p text :start start)))
+  (let ((position (position-if-not #'blank-character-p text :start start)))
     (if (and position (not (comment-at-p text position)))
         position
         (length text))))
 
 (defun word-end (text start)
   "Return the end of the word in TEXT that begins at START: the next blank or semicolon."
-  (or (position-if (lambda (char) (or (blank-p char) (char= #\; char))) text :start start)
+  (or (position-if (lambda (char) (or (blank-character-p char) (char= #\; char))) text :start start)
       (length text)))
 
 (defun token-end (text start)
@@ -63,9 +63,9 @@ blanks; without a second quote it extends to the end of TEXT."
         (if quote (1+ quote) (length text)))
       (word-end text start)))
 
-(defun split-line (text)
+(defun split-first-word (text)
   "Return the first word of TEXT, and the rest of TEXT."
-  (let* ((start (position-if-not #'blank-p text))
+  (let* ((start (position-if-not #'blank-character-p text))
          (end (token-end text start)))
     (values (subseq text start end) (subseq text end))))
 
@@ -79,8 +79,8 @@ blanks; without a second quote it extends to the end of TEXT."
 (defparameter *prompt-labels* '("Robot>" "Break>") "The prompts that pasted lines may begin with.")
 
 (defun message-p (text)
-  (let* ((start (position-if-not #'blank-p text))
-         (end (and start (position-if #'blank-p text :start start))))
+  (let* ((start (position-if-not #'blank-character-p text))
+         (end (and start (position-if #'blank-character-p text :start start))))
     (and end (< start (1- end)) (char= #\: (char text (1- end))))))
 
 (defun warning-p (text)
@@ -90,7 +90,7 @@ blanks; without a second quote it extends to the end of TEXT."
 
 (defun text-after-prompt (text)
   "Return the rest of TEXT, a line, after its prompt; NIL if TEXT does not begin with a prompt."
-  (let* ((text (subseq text (or (position-if-not #'blank-p text) 0)))
+  (let* ((text (subseq text (or (position-if-not #'blank-character-p text) 0)))
          (label (find-if (lambda (label) (starts-with-subseq label text)) *prompt-labels*)))
     (and label (subseq text (length label)))))
 
@@ -123,12 +123,12 @@ error, return an empty string."
         ((text-after-prompt line) (let ((text (text-without-prompts line)))
                                    (and (string/= "" text) text)))))
 
-(defun skip-form (text more)
+(defun discard-form (text more)
   "If TEXT begins with a Lisp form, read that form and discard it. MORE, a function of the text read
 so far, returns the next line of the form, or signals an error at the end."
   (when (and (not (comment-p text)) (lisp-p text))
     (handler-case (let ((*read-suppress* t))
-                    (read-preserving-whitespace (make-growing-text text 0 more)))
+                    (read-preserving-whitespace (make-growing-text-stream text 0 more)))
       (error () nil))))
 
 (defun split-after-form (text lines)
@@ -143,7 +143,7 @@ prompts, and the lines after the form. A line typed at a prompt does not belong 
                    do (pop lines)
                    unless (text-after-prompt line)
                      return (first (push (or (typed-part line) line) taken)))))
-      (skip-form text #'next-of-form)
+      (discard-form text #'next-of-form)
       (values (nreverse taken) lines))))
 
 (defun lines-typed-at-prompts (lines)
@@ -159,7 +159,7 @@ incomplete form are taken for the rest of the form."
                          (setf lines below)
                          rest)))
 
-(defun typed-lines (lines)
+(defun typed-lines-of-paste (lines)
   "Return those of the pasted LINES that were typed: lines before the first prompt, lines with
 prompts except messages, and lines that complete a form. If no line has a prompt, return LINES."
   (let ((start (position-if #'text-after-prompt lines)))
@@ -180,4 +180,4 @@ prompts except messages, and lines that complete a form. If no line has a prompt
                   last)))
 
 (defun without-pasted-output (text)
-  (format nil "~{~A~^~%~}" (typed-lines (lines-in text))))
+  (format nil "~{~A~^~%~}" (typed-lines-of-paste (lines-in text))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(defun warn-of-rewind (point simulation)
+(defun warn-of-cancelled-drive (point simulation)
   "Queue a warning that the robot no longer goes to POINT: a rewind has replaced SIMULATION."
   (let ((*message-queue* (simulation-messages (latest-successor simulation))))
     (warning-set (format nil "go-to: The run was rewound on the way to ~A, so the robot no ~
@@ -33,7 +33,7 @@
                      (let ((*asker* own) (*request-origin* own))
                        (if (eq simulation (latest-successor simulation))
                            (report-arrival err robot point)
-                           (warn-of-rewind point simulation)))
+                           (warn-of-cancelled-drive point simulation)))
                      (end-job job err))))
     (push job (session-jobs session))))
 
@@ -59,7 +59,7 @@ is a function like METHOD-USAGE, which returns the text for a method."
                            collect (funcall usage (manipulation-name manipulation) method))
                      :test #'string=))
 
-(defun find-manipulation-named (name)
+(defun resolve-manipulation (name)
   (or (find-manipulation name nil)
       (reject-unknown-name "manipulation" name (mapcar #'manipulation-name (all-manipulations))
                    "MANIPULATE lists all.")))
@@ -91,7 +91,7 @@ is a function like METHOD-USAGE, which returns the text for a method."
                            (end-job job code)))))
     (push job (session-jobs session))))
 
-(define-choices :manipulation (mapcar #'manipulation-name (all-manipulations)))
+(define-argument-choices :manipulation (mapcar #'manipulation-name (all-manipulations)))
 
 (define-line "MANIPULATE" (session (name :manipulation "a manipulation" :optional)
                                    (args :rest "numbers of designators, then of the hand"
@@ -99,8 +99,8 @@ is a function like METHOD-USAGE, which returns the text for a method."
     (:manipulating)
     "List the manipulations, or carry out the manipulation NAME. ARGS are the numbers of the
 designators that denote its objects, then the number of the hand or other part."
-  (cond (name (start-manipulation session (find-manipulation-named name)
-                                  (read-typed-data (or args "") (find-line "MANIPULATE"))))
+  (cond (name (start-manipulation session (resolve-manipulation name)
+                                  (read-typed-data (or args "") (find-line-command "MANIPULATE"))))
         ((all-manipulations)
          (dolist (manipulation (all-manipulations))
            (format t "~{  ~A~%~}" (manipulation-usages manipulation))))

@@ -10,10 +10,11 @@
 
 (defun write-menu (lines)
   (dolist (line lines)
-    (write-filled (first-sentence (line-sentence line)) 27 (format nil "  ~A" (usage line)))))
+    (write-filled (first-clause (line-sentence line)) 27
+                  (format nil "  ~A" (line-command-usage line)))))
 
 (defun lines-in-family (family)
-  (remove family (all-lines) :key #'line-family :test-not #'eq))
+  (remove family (all-line-commands) :key #'line-family :test-not #'eq))
 
 (defun write-main-menu ()
   (loop for (family . title) in *families*
@@ -34,13 +35,13 @@ lists the keys that edit a line. Scroll up in your terminal for what has left th
             (line-parameter-optional-p parameter))))
 
 (defun write-help (line)
-  (format t "~A~%" (usage line))
+  (format t "~A~%" (line-command-usage line))
   (write-filled (line-sentence line) 2)
   (dolist (parameter (line-parameters line)) (write-filled (line-parameter-help parameter) 4))
   (dolist (detail (line-details line)) (write-filled detail 2)))
 
 (defun write-help-about (name)
-  (let ((line (find name (all-lines) :key #'line-name :test #'string-equal))
+  (let ((line (find name (all-line-commands) :key #'line-name :test #'string-equal))
         (alias (assoc name *aliases* :test #'string-equal))
         (plan (find-plan-named name)))
     (cond (line (write-help line))
@@ -56,7 +57,7 @@ lists the keys that edit a line. Scroll up in your terminal for what has left th
   (handler-bind ((bad-line (lambda (condition)
                              (reject-line "~A APROPOS ~(~A~) searches all names."
                                           (bad-line-text condition) name))))
-    (find-line name)))
+    (find-line-command name)))
 
 (define-line "HELP" (session (name :topic "a command, a plan, or whatever has a name" :optional))
     (:general)

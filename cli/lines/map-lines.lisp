@@ -70,13 +70,13 @@ room for LINES-BELOW lines below."
         (console (session-console session)))
     (multiple-value-bind (columns lines) (terminal-size session)
       (with-output-to-string (*standard-output*)
-        (while-still (write-string (apply #'text-map robot
-                                          :columns (max 20 (1- columns))
-                                          :rows (and lines (max 5 (- lines lines-below)))
-                                          :paint (and (console-colored-p console) #'paint)
-                                          options)))))))
+        (with-time-stopped (write-string (apply #'text-map robot
+                                                :columns (max 20 (1- columns))
+                                                :rows (and lines (max 5 (- lines lines-below)))
+                                                :paint (and (console-colored-p console) #'paint)
+                                                options)))))))
 
-(define-choices :map-words (mapcar #'string-downcase (words-for-map-line)))
+(define-argument-choices :map-words (mapcar #'string-downcase (words-for-map-line)))
 
 (define-line "MAP" (session (what :map-words
                                   "a radius or LEFT TOP RIGHT BOTTOM; names of layers; LEGEND"
@@ -155,7 +155,8 @@ With COUNT, stop also after COUNT ticks or when the run is idle; without COUNT, 
 typed. Return true if a key was pressed."
   (loop with end = (and count (+ (simulation-tick simulation) count))
         with console = (session-console session)
-        do (write-at-once (overwrite-screen-code (screen-text session simulation options)) console)
+        do (write-immediately (overwrite-screen-code (screen-text session simulation options))
+                              console)
         until (or (if end
                       (or (>= (simulation-tick simulation) end)
                           (idle-in-session-p session simulation))

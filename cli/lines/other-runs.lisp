@@ -52,7 +52,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 
 ;;; Which trial is meant.
 
-(defun experiment-names (start)
+(defun experiment-names-matching (start)
   "Return the experiment names that begin with START, or only START if START itself is a name."
   (let ((experiment (find-experiment start nil)))
     (if experiment
@@ -62,7 +62,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 
 (defun resolve-experiment (name)
   "Return the experiment named NAME, or the only one whose name begins with NAME. Signals BAD-LINE."
-  (let ((names (experiment-names name)))
+  (let ((names (experiment-names-matching name)))
     (cond ((null names)
            (reject-unknown-name "experiment" name (mapcar #'experiment-name (all-experiments))
                         "TRIAL lists all; (load \"FILE\") loads others."))
@@ -78,7 +78,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
 (defun write-experiments ()
   (if (all-experiments)
       (dolist (experiment (all-experiments))
-        (write-filled (whole-sentence (experiment-description experiment)) 27
+        (write-filled (first-full-sentence (experiment-description experiment)) 27
                       (format nil "  ~(~A~)" (experiment-name experiment))))
       (format t "No experiment is defined. (load \"FILE\") loads a file that has some.~%")))
 
@@ -253,7 +253,7 @@ which trial the prompt is in."
     (:running)
     "List the failed trials of an experiment by condition and reason. For each reason, show a TRIAL
 line that opens such a trial."
-  (let ((names (experiment-names name)))
+  (let ((names (experiment-names-matching name)))
     (print-failures (if (and names (null (rest names)) (not (existing-path (path-of-name name))))
                         (first names)
                         name)

@@ -6,7 +6,7 @@
   "Return the cycle of aliases that arises if NAME becomes an alias of TEXT: a list that begins and
 ends with NAME. Return NIL if there is no cycle."
   (loop with aliases = (acons name (list text) *aliases*)
-        for word = name then (split-line (second alias))
+        for word = name then (split-first-word (second alias))
         for alias = (assoc word aliases :test #'string-equal)
         while alias
         collect (first alias) into names
@@ -17,13 +17,13 @@ ends with NAME. Return NIL if there is no cycle."
   "Make NAME an alias of TEXT. Signals BAD-LINE if NAME is a command, if TEXT does not begin with a
 command, or if aliases would form a cycle."
   (let ((circle (alias-cycle name text)) (expansion (expand-alias text)))
-    (cond ((find name (all-line-names) :test #'string=)
+    (cond ((find name (all-line-command-names) :test #'string=)
            (reject-line "~A is a command already; choose another name for the alias." name))
           (circle
            (reject-line "The alias ~A would stand for itself: ~{~A~^ = ~}. Give a command after ~
                          its name."
                         name circle))
-          ((not (lisp-p expansion)) (find-line (values (split-line expansion))))))
+          ((not (lisp-p expansion)) (find-line-command (values (split-first-word expansion))))))
   (setf *aliases* (cons (list name text) (remove name *aliases* :key #'first :test #'string=))))
 
 (define-line "ALIAS" (session (alias :token "a name" :optional)

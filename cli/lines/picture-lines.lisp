@@ -124,7 +124,7 @@ output. After an error, signal BAD-LINE with TROUBLE, a format control for the e
 
 (defun find-running-robot (name)
   "Return the robot NAME of this or another live run. Signals BAD-LINE if no such robot is found."
-  (let* ((name (find-robot-named name))
+  (let* ((name (resolve-robot-name name))
          (robot (or (find name (and *simulation* (simulation-robots *simulation*))
                           :key #'robot-name)
                     (find-robot name nil)))

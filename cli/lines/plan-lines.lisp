@@ -21,7 +21,7 @@ package. Return NIL if there is no such plan."
           ((rest candidates) (reject-ambiguous name candidates))
           (t (find-plan-named (string (first candidates)))))))
 
-(define-choices :plan (plan-names))
+(define-argument-choices :plan (plan-names))
 
 ;;; What plans take.
 
@@ -29,7 +29,7 @@ package. Return NIL if there is no such plan."
   (or (documentation (procedure-name plan) 'function) "Not documented."))
 
 ;; A plan that another plan of its author calls is a part, and not listed.
-(defun called-plans ()
+(defun helper-plans ()
   "Return the plans that are called by other plans of the same package."
   (loop for plan in (all-procedures)
         append (loop for part in (called-procedures plan)
@@ -39,11 +39,11 @@ package. Return NIL if there is no such plan."
                        collect part)))
 
 (defun write-plan-menu ()
-  (let ((parts (called-plans)))
+  (let ((parts (helper-plans)))
     (dolist (name (plan-names))
       (let ((plan (find-plan-named (string name))))
         (unless (member plan parts)
-          (write-filled (whole-sentence (plan-documentation plan)) 27
+          (write-filled (first-full-sentence (plan-documentation plan)) 27
                         (format nil "  ~A" name))))))
   (format t "HELP name shows the arguments of a plan. These plans call other plans,~%~
              which you can start, too.~%"))
@@ -92,7 +92,7 @@ package. Return NIL if there is no such plan."
 at once, otherwise when the plan has ended."
   (if name
       (start-plan-in-session session (resolve-plan name)
-                             (read-typed-data (or args "") (find-line "PLAN")))
+                             (read-typed-data (or args "") (find-line-command "PLAN")))
       (write-plan-menu)))
 
 ;;; Those under way.
@@ -178,7 +178,8 @@ TRACE-PLANS ON, or in Lisp (setf *trace-plans* t), before the plan starts."
   (if n
       (write-string (escape-controls (task-why-text n)))
       (let ((robot (session-robot)))
-        (while-still (dolist (sentence (failure-sentences robot)) (write-filled sentence 0))))))
+        (with-time-stopped (dolist (sentence (failure-sentences robot))
+                             (write-filled sentence 0))))))
 
 (define-line "PLAN-TIMELINE" (session (file :file "a name that ends in .svg or .png"))
     (:planning)
@@ -189,7 +190,7 @@ what it waited for and the commands that it issued. A trace is needed: TRACE-PLA
 
 ;;; END-TASK, STEP-TASK and TRACE-PLANS: changing running plans.
 
-(define-choices :task-number
+(define-argument-choices :task-number
   (call-with-plans-in-use
    (lambda (runner) (and runner (mapcar #'task-serial (all-tasks runner))))))
 

@@ -123,7 +123,7 @@ parameters whose names begin with NAME, or else those whose names contain NAME."
         (called #'starts-with-subseq)
         (called #'search))))
 
-(defun list-parameters (parameters)
+(defun write-parameters (parameters)
   (loop with group = nil
         for parameter in parameters
         do (unless (equal group (parameter-group parameter))
@@ -142,7 +142,7 @@ parameters whose names begin with NAME, or else those whose names contain NAME."
   (let ((parameters (parameters-matching (or name ""))))
     (cond ((rest parameters)
            (when value (reject-line "~A is a part of several names. Type more of the name." name))
-           (list-parameters parameters))
+           (write-parameters parameters))
           (t (let ((parameter (or (first parameters) (find-parameter name))))
                (when value
                  (setf (parameter-value parameter)
@@ -167,7 +167,7 @@ parameters whose names begin with NAME, or else those whose names contain NAME."
                   (state-digest simulation)))
       (format t "~A: ~A" (native-name path) (tick-and-state-text tick digest)))))
 
-(defun parse-anyway (word)
+(defun parse-anyway-word (word)
   "True if WORD is ANYWAY, NIL if WORD is NIL. Signals BAD-LINE for another word."
   (cond ((null word) nil)
         ((string-equal word "anyway") t)
@@ -199,5 +199,5 @@ is a function of a tick that shows the progress at the terminal of SESSION."
     "Repeat the run recorded in FILE, in a separate world, and show the tick and state at its end.
 ANYWAY repeats the run even if definitions differ from those of the recorded run."
   (multiple-value-bind (tick digest)
-      (replay-with-progress session (load-journal (path-of-name file)) (parse-anyway anyway))
+      (replay-with-progress session (load-journal (path-of-name file)) (parse-anyway-word anyway))
     (format t "~A: ~A" file (tick-and-state-text tick digest))))

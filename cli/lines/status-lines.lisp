@@ -6,7 +6,7 @@
 
 (defun write-parts (heading writer reader)
   (let ((robot (session-robot)))
-    (while-still
+    (with-time-stopped
       (format t "~A~%-----~%" heading)
       (map nil writer (funcall reader robot)))))
 
@@ -111,7 +111,7 @@
   (format t "Designators:~%")
   (mapc #'write-designator (getf status :designators)))
 
-(defun write-if-no-ticks-pass (session simulation)
+(defun write-why-no-ticks-pass (session simulation)
   "If SIMULATION, the live run of SESSION, passes no ticks now, print why."
   (when (and (live-p simulation)
              (or (paused-p simulation) (idle-p simulation))
@@ -125,9 +125,9 @@ turning speed, what its cameras see now, the last place sensed, its designators,
 progress and who issued them, the last interruption, and the cost of thinking if it was changed. A
 line tells if no ticks pass now. In Lisp: (status)."
   (let ((robot (session-robot)))
-    (while-still (or (report-status-object session robot)
-                     (progn (write-status (status robot))
-                            (write-if-no-ticks-pass session (current-simulation)))))))
+    (with-time-stopped (or (report-status-object session robot)
+                           (progn (write-status (status robot))
+                                  (write-why-no-ticks-pass session (current-simulation)))))))
 
 (defun thing-place-text (thing)
   (let ((location (thing-location thing)))
@@ -140,7 +140,7 @@ line tells if no ticks pass now. In Lisp: (status)."
     (:seeing)
     "List all things in the world with their locations and attributes."
   (let ((world (robot-world (session-robot))))
-    (while-still
+    (with-time-stopped
       (do-things (thing world)
         (write-trimmed-line "~A ~A" thing (thing-place-text thing))
         (write-descriptor (thing-attributes thing) #'plain-number-text)))))

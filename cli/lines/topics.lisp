@@ -25,13 +25,13 @@
           (plain-number-text (attribute-noticed attribute))
           (attribute-supporters attribute)))
 
-(defun attribute-values ()
+(defun values-with-attributes ()
   "Return lists (value attribute) for all values of attributes that are names, such as RED."
   (loop for attribute in (all-attributes)
         append (loop for value in (attribute-domain attribute)
                      unless (member value '(t nil)) collect (list value attribute))))
 
-(defun value-kind (value)
+(defun value-attribute-name (value)
   (format nil "~(~S~)" (attribute-name (second value))))
 
 (defun value-description (value)
@@ -161,7 +161,7 @@
       (with-input-from-string (in text)
         (loop for line = (read-line in nil)
               while line
-              do (cond ((or (string= line "") (blank-p (char line 0)))
+              do (cond ((or (string= line "") (blank-character-p (char line 0)))
                         (end-paragraph)
                         (write-trimmed-line "~VA~A" indent "" line))
                        (t (push line paragraph)))))
@@ -170,12 +170,12 @@
 ;;; The kinds.
 
 (defparameter *topic-kinds*
-  '(("line" all-lines line-name line-sentence write-help)
+  '(("line" all-line-commands line-name line-sentence write-help)
     ("plan" all-procedures procedure-name plan-documentation write-plan-help)
     ("parameter" all-parameters parameter-name parameter-sentence write-parameter)
     ("place type" all-place-types place-type-name place-type-description)
     ("attribute" all-attributes attribute-name attribute-description)
-    (value-kind attribute-values first value-description)
+    (value-attribute-name values-with-attributes first value-description)
     ("substance" all-substances substance-name substance-description)
     ("kicker" all-kickers kicker-name kicker-description)
     ("manipulation" all-manipulations manipulation-name manipulation-description)
@@ -229,8 +229,8 @@ WRITER prints the object's help. TITLE is a text or a function of an object.")
           (t (format t "~A, ~A~%" (topic-name topic) (topic-title topic))
              (write-filled (topic-description topic) 2)))))
 
-(defmethod choices ((type (eql :topic)) session typed)
-  (append (choices :command session typed)
+(defmethod argument-choices ((type (eql :topic)) session typed)
+  (append (argument-choices :command session typed)
           (mapcar (lambda (topic) (string-downcase (topic-name topic))) (all-topics))))
 
 ;;; Subjects that are no names in the simulator: keys, units, scripts.

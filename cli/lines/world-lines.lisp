@@ -20,7 +20,7 @@
   (setf (gethash old *replaced-runs*) (list (robot-simulation robot) (robot-name robot)))
   (end-abandoned-run old)
   (dolist (other (remove-if #'session-place (remove session (sessions-showing old))))
-    (multiple-value-bind (simulation name) (run-after old (session-robot-name other))
+    (multiple-value-bind (simulation name) (run-to-continue-in old (session-robot-name other))
       (when simulation (announce-run other simulation name)))))
 
 (defun start-live-run (session robot-name)
@@ -32,10 +32,10 @@
     (let ((robot (simulator robot-name :display nil
                                        :rate (if old (simulation-rate old) *default-rate*))))
       (when old (end-replaced-run session old robot))
-      (when (display-wanted-p session) (announce-display robot '()))
+      (when (display-wanted-p session) (open-display-or-report robot '()))
       (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))))
 
-(defun choose-robot (names name)
+(defun choose-robot-name (names name)
   "Return the element of NAMES, robots of one world, that equals NAME; the first if NAME is NIL."
   (if name
       (or (find name names :test #'same-name-p)
@@ -48,14 +48,14 @@
     "List the worlds, or start a new run in the world NAME, at tick 0, and command ROBOT there. The
 present run ends."
   (if name
-      (start-world-of-robot session (choose-robot (robot-names-in-world name) robot))
+      (start-world-of-robot session (choose-robot-name (robot-names-in-world name) robot))
       (write-worlds)))
 
-(defun find-robot-named (name)
+(defun resolve-robot-name (name)
   (or (find name (robot-names) :test #'same-name-p)
       (reject-unknown-name "robot" name (robot-names) "ROBOT lists the robots of this world.")))
 
-(defun list-robots ()
+(defun write-robots ()
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))
     (multiple-value-bind (x y) (robot-position robot)
       (write-trimmed-line "~16A @ (~,2F,~,2F)~:[~; commanded~]" robot x y
@@ -71,8 +71,8 @@ present run ends."
     (:seeing)
     "List the robots of this world, or command its robot NAME from now on. WORLD leads to other
 worlds and their robots."
-  (let ((name (and name (find-robot-named name))))
-    (cond ((null name) (list-robots))
+  (let ((name (and name (resolve-robot-name name))))
+    (cond ((null name) (write-robots))
           ((member name (current-robot-names))
            (import-robot-names (current-robot-names))
            (setf *prompt-robot* name)

@@ -112,7 +112,7 @@ the project. The file is NIL if it is not known."
   (let ((text (symbol-documentation name)))
     (and (string/= "" text) text)))
 
-(defun manipulation-use (name method)
+(defun method-call-text (name method)
   (multiple-value-bind (objects by others) (method-signature method)
     (format nil "(manipulate ~(~A~{ ~A~} ~A~{ ~A~}~) [continuation])" name objects (first by)
             (mapcar #'first others))))
@@ -120,7 +120,7 @@ the project. The file is NIL if it is not known."
 (defun manipulation-entry (name manipulation file)
   (make-entry :name (string-downcase name) :chapter :manipulations
               :use (format nil "~{~A~^ or ~}"
-                           (manipulation-usages manipulation #'manipulation-use))
+                           (manipulation-usages manipulation #'method-call-text))
               :facts (list (list "At the prompt"
                                  (format nil "~{`manipulate ~A`~^ or ~}"
                                          (manipulation-usages manipulation))))

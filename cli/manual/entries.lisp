@@ -222,7 +222,7 @@ run (manual 3.1.1)."))
 
 (defun line-entry (line)
   (make-entry :name (string-downcase (line-name line)) :chapter :prompt
-              :section (heading-text (line-family line)) :use (usage line)
+              :section (heading-text (line-family line)) :use (line-command-usage line)
               :facts (append (when (line-full-name line)
                                (list (list "Stands for"
                                            (code-markup (line-full-name line)))))
@@ -237,4 +237,4 @@ run (manual 3.1.1)."))
   (let ((others (mapcar #'command-prompt-name
                         (set-difference (all-commands) (simulator-commands)))))
     (remove-if (lambda (line) (member (line-name line) others :test #'string-equal))
-               (all-lines))))
+               (all-line-commands))))

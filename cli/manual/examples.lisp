@@ -33,7 +33,7 @@ be variables of the block. ID is the id of the heading above the block."
          (end (or (position-if #'name-end-p code :start start) (length code))))
     (string-downcase (subseq code start end))))
 
-(defun names-of-code-only (tokens)
+(defun names-if-all-code (tokens)
   "Return the names in TOKENS, a heading or paragraph; NIL if TOKENS contain other text."
   (flet ((code-p (token) (tag-named-p "code" token)))
     (loop for part in (split-into-elements (rest (butlast tokens)) #'code-p)
@@ -73,7 +73,7 @@ be variables of the block. ID is the id of the heading above the block."
                         (funcall function name i end)
                         (setf i end)))))))
 
-(defun global-name-p (name text start)
+(defun global-reference-p (name text start)
   "True if NAME, in TEXT at START, cannot be a variable of TEXT: NAME is called or quoted, or looks
 like a name of the simulator."
   (or (find #\- name :start (min 1 (length name)))
@@ -114,7 +114,7 @@ like a name of the simulator."
       (make-example :page page :id (second heading) :heading (third heading) :text text
                     :lisp-p lisp-p :names names
                     :words (if lisp-p (names-in-lisp text) (typed-names text))
-                    :calls (if lisp-p (names-in-lisp text #'global-name-p) '())))))
+                    :calls (if lisp-p (names-in-lisp text #'global-reference-p) '())))))
 
 (defstruct (example-search (:conc-name search-) (:constructor make-example-search) (:copier nil))
   "The state of a search for examples on PAGE. HEADING, a list (level id text), is the last heading.
@@ -126,7 +126,7 @@ names. EXAMPLES are the examples found, the last first."
   (used-p nil :type boolean)
   (examples '() :type list))
 
-(defun set-names (state names &key keep)
+(defun set-search-names (state names &key keep)
   "Let the next blocks be examples of NAMES. If KEEP, keep names that no block has followed yet."
   (when names
     (setf (search-names state) (if (and keep (not (search-used-p state)))
@@ -140,7 +140,7 @@ names. EXAMPLES are the examples found, the last first."
                                      (html-text element))
         (search-names state) '()
         (search-used-p state) nil)
-  (set-names state (names-of-code-only element)))
+  (set-search-names state (names-if-all-code element)))
 
 (defun visit-block (state element)
   (let ((example (make-block-example element (search-page state) (search-heading state)
@@ -163,7 +163,8 @@ names. EXAMPLES are the examples found, the last first."
         (cond ((heading-level (first part)) (visit-heading state part))
               ((tag-named-p "pre" (first part)) (visit-block state part))
               ((tag-named-p "p" (first part))
-               (set-names state (or (names-of-code-only part) (names-in-bold part)) :keep t)))))
+               (set-search-names state (or (names-if-all-code part) (names-in-bold part)) :keep
+                                 t)))))
     (reverse (search-examples state))))
 
 (defun read-examples (pages)

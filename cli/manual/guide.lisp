@@ -108,7 +108,7 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
           collect (if (heading-level token)
                       (let* ((id (heading-id (html-text (split-element rest))))
                              (count (1- (incf (gethash id counts 0)))))
-                        (set-tag-attribute "id" (format nil "~A~[~:;-~:*~D~]" id count) token))
+                        (tag-with-attribute "id" (format nil "~A~[~:;-~:*~D~]" id count) token))
                       token))))
 
 (defun headings (tokens)
@@ -123,13 +123,13 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
                           (html-text heading)
                           (html-text (subseq below 0 (position-if #'heading-level below)))))))
 
-(defun mark-readings (tokens)
+(defun add-reading-ids (tokens)
   "Return TOKENS, the page of readings, with an id such as reading-12 where each reading begins."
   (loop for (token next) on tokens
         for number = (and (tag-named-p "strong" token) next
                           (parse-integer next :junk-allowed t))
         collect (if number
-                    (set-tag-attribute "id" (format nil "reading-~D" number) token)
+                    (tag-with-attribute "id" (format nil "reading-~D" number) token)
                     token)))
 
 ;;; The usage texts together are one page.
@@ -153,7 +153,7 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
          (first (find 1 (headings tokens) :key #'first)))
     (make-page :source source :file (html-file-name source)
                :title (or (second (known-page source)) (third first) source)
-               :tokens (if (string= source "src/readings.md") (mark-readings tokens) tokens))))
+               :tokens (if (string= source "src/readings.md") (add-reading-ids tokens) tokens))))
 
 (defun read-guide ()
   "Return all pages of the guide."

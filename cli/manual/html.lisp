@@ -95,7 +95,7 @@ of an id needs escaping in addresses."
       (let ((start (+ start (length mark))))
         (unescape-html (subseq tag start (position #\" tag :start start)))))))
 
-(defun set-tag-attribute (attribute value tag)
+(defun tag-with-attribute (attribute value tag)
   (let* ((mark (format nil " ~A=\"" attribute))
          (start (search mark tag))
          (end (if start

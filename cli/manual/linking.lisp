@@ -34,7 +34,7 @@ names in lower case to entries. FILES are the project's files to copy beside the
             (t (push part parts))))
     (format nil "~{~A~^/~}" (reverse parts))))
 
-(defun copy-name (name)
+(defun copied-file-name (name)
   "Return the name of the manual's copy of the project's file NAME. If browsers cannot show the
 file, the copy has the type txt."
   (format nil "files/~A~:[.txt~;~]" name
@@ -47,7 +47,7 @@ return the address of its page, or of the first page."
       (let ((page (find-page (format nil "~A/README.md" name) book)))
         (if page (page-file page) "index.html"))
       (progn (pushnew name (book-files book) :test #'string=)
-             (copy-name name))))
+             (copied-file-name name))))
 
 (defun manual-address (address page book)
   "Return the address in the manual for ADDRESS, a link on PAGE in the project."
@@ -67,7 +67,7 @@ return the address of its page, or of the first page."
 (defun link-html (address html)
   (format nil "<a href=\"~A\">~A</a>" (escape-html address) html))
 
-(defun link-name (name html book)
+(defun linked-name-html (name html book)
   (let ((entry (find-entry-named name book)))
     (if entry (link-html (entry-address entry) html) html)))
 
@@ -83,7 +83,7 @@ return the address of its page, or of the first page."
                (write-string (escape-html (subseq text done end)) out)
                (setf done end)))
         (call-with-each-name (lambda (name start end)
-                               (let ((entry (and (global-name-p name text start)
+                               (let ((entry (and (global-reference-p name text start)
                                                  (find-entry-named name book))))
                                  (when (and entry (member (entry-chapter entry) *chapters-of-lisp*))
                                    (copy-to start)
@@ -107,22 +107,23 @@ return the address of its page, or of the first page."
                         (list "<pre><code>" (lisp-html (html-text part) book) "</code></pre>"))
                        ((tag-named-p "pre" token) part)
                        ((tag-named-p "code" token)
-                        (list (link-name (first-name (html-text part)) (format nil "~{~A~}" part)
-                                         book)))
+                        (list (linked-name-html (first-name (html-text part))
+                                                (format nil "~{~A~}" part)
+                                                book)))
                        ((tag-named-p "a" token) (link-with-manual-address part page book))
                        (t (list (rewrite-picture-address token page book)))))))
 
 (defun link-with-manual-address (element page book)
   "Return the tokens of ELEMENT, a link on PAGE, with its address changed to the one in the manual."
-  (cons (set-tag-attribute "href"
-                           (manual-address (attribute-value "href" (first element)) page book)
-                           (first element))
+  (cons (tag-with-attribute "href"
+                            (manual-address (attribute-value "href" (first element)) page book)
+                            (first element))
         (rest element)))
 
 (defun rewrite-picture-address (token page book)
   "Return TOKEN of PAGE; if TOKEN is a picture, with the address of the manual's copy."
   (if (tag-named-p "img" token)
-      (set-tag-attribute "src" (manual-address (attribute-value "src" token) page book) token)
+      (tag-with-attribute "src" (manual-address (attribute-value "src" token) page book) token)
       token))
 
 ;;; Prose of docstrings: names are in capitals, or in backquotes where the manual adds text.
@@ -159,7 +160,7 @@ return the address of its page, or of the first page."
                 (or (and (some #'alpha-char-p name) (notany #'lower-case-p name))
                     (char= #\: (char name 0)))
                 (not (member name own :test #'string-equal)))
-           (format nil "~A~A" (link-name name (escape-html name) book)
+           (format nil "~A~A" (linked-name-html name (escape-html name) book)
                    (escape-html (subseq word (length name)))))
           (t (escape-html word)))))
 
@@ -181,8 +182,9 @@ return the address of its page, or of the first page."
     (loop for part in (uiop:split-string text :separator "`")
           for code-p = nil then (not code-p)
           do (write-string (if code-p
-                               (link-name part (format nil "<code>~A</code>" (escape-html part))
-                                          book)
+                               (linked-name-html part
+                                                 (format nil "<code>~A</code>" (escape-html part))
+                                                 book)
                                (line-html part book own))
                            out))))
 

@@ -24,6 +24,7 @@ from the definitions in this Lisp.")
   (:import-from :ars-magna.rpl-robot #:all-fluent-variables)
   (:import-from :ars-magna.experiment #:experiment-documentation)
   (:import-from :ars-magna.cli
-                #:all-lines #:line-name #:line-family #:line-sentence #:line-details
-                #:line-parameters #:line-full-name #:line-action #:usage #:line-parameter-help
-                #:manipulation-usages #:documentation-texts #:whole-sentence))
+                #:all-line-commands #:line-name #:line-family #:line-sentence #:line-details
+                #:line-parameters #:line-full-name #:line-action #:line-command-usage
+                #:line-parameter-help
+                #:manipulation-usages #:documentation-texts #:first-full-sentence))

@@ -129,7 +129,7 @@ Synonyms leave out a, an, the and my, because the search ignores these words.")
 
 (defun entry-row (entry)
   (make-row (entry-name entry) (chapter-title (entry-chapter entry)) (entry-address entry)
-            (whole-sentence (entry-text entry))))
+            (first-full-sentence (entry-text entry))))
 
 (defun synonym-rows (rows)
   (loop for (name . synonyms) in *synonyms*

@@ -58,7 +58,7 @@
 
 ;;; The first page.
 
-(defun page-links (part book)
+(defun page-list-html (part book)
   (list-html (loop for page in (remove part (book-pages book) :key #'page-part :test-not #'eq)
                    collect (link-html (page-file page) (escape-html (page-title page))))))
 
@@ -69,7 +69,7 @@
 (defun entries-in-chapter (chapter book)
   (remove chapter (book-entries book) :key #'entry-chapter :test-not #'eq))
 
-(defun chapter-links (book)
+(defun chapter-list-html (book)
   (list-html (loop for chapter in (chapters-in book)
                    collect (format nil "~A (~D): ~A"
                                    (link-html (chapter-file chapter)
@@ -87,11 +87,11 @@
 <h2 id=\"reference\">Reference</h2>~%~A
 <p>~A lists all names.</p>
 <h2 id=\"inside\">Inside</h2>~%~A"
-                            (page-links :learning book) (page-links :guide book)
-                            (page-links :examples book) (chapter-links book)
+                            (page-list-html :learning book) (page-list-html :guide book)
+                            (page-list-html :examples book) (chapter-list-html book)
                             (link-html "names.html" "All names")
-                            (format nil "~A~A" (page-links :inside book)
-                                    (page-links :about book)))))
+                            (format nil "~A~A" (page-list-html :inside book)
+                                    (page-list-html :about book)))))
 
 ;;;; The reference
 
@@ -102,7 +102,7 @@
 
 ;;; Examples.
 
-(defun source-link-html (example)
+(defun example-link-html (example)
   (link-html (format nil "~A#~A" (page-file (example-page example)) (example-id example))
              (escape-html (format nil "~A: ~A" (page-title (example-page example))
                                   (example-heading example)))))
@@ -112,7 +112,7 @@
           (if (example-lisp-p example)
               (lisp-html (example-text example) book)
               (escape-html (example-text example)))
-          (source-link-html example)))
+          (example-link-html example)))
 
 (defun show-in-full-p (example named-p)
   "True if EXAMPLE is to be shown in full. NAMED-P is true if the example names its entry."
@@ -134,7 +134,7 @@
                   collect (if (show-in-full-p example named-p)
                               (example-html example book)
                               (format nil "<p class=\"from\">Used in ~A.</p>~%"
-                                      (source-link-html example)))))))
+                                      (example-link-html example)))))))
 
 (defparameter *note-on-examples*
   "A link leads from each example to its page. Definitions that the example uses are further up on
@@ -185,7 +185,7 @@ that page."
 
 (defun write-reference (out book)
   (write-page-frame out "Reference"
-                    (format nil "<h1>Reference</h1>~%~A" (chapter-links book))))
+                    (format nil "<h1>Reference</h1>~%~A" (chapter-list-html book))))
 
 ;;; All names.
 
@@ -194,7 +194,7 @@ that page."
            (format nil "~A (~(~A~)): ~A"
                    (link-html (entry-address entry) (escape-html (entry-name entry)))
                    (escape-html (chapter-title (entry-chapter entry)))
-                   (escape-html (whole-sentence (entry-text entry))))))
+                   (escape-html (first-full-sentence (entry-text entry))))))
     (write-page-frame out "All names"
                       (format nil "<h1>All names</h1>~%~A"
                               (list-html (mapcar #'item
@@ -239,7 +239,7 @@ directory if it does not exist."
     (dolist (name '("style.css" "search.js"))
       (copy-into name (project-path (format nil "cli/manual/~A" name)) directory))
     (dolist (name (book-files book))
-      (copy-into (copy-name name) (project-path name) directory))
+      (copy-into (copied-file-name name) (project-path name) directory))
     (merge-pathnames "index.html" directory)))
 
 (defun main (directory)

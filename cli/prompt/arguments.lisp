@@ -90,12 +90,12 @@ not evaluated, so a quote before the datum does not matter."
     (error (condition)
       (reject-line "~A cannot be read: ~A. ~A" (subseq text start)
                    (one-line (if (typep condition 'reader-error)
-                                 (reading-trouble condition)
+                                 (reading-error-text condition)
                                  (condition-text condition)))
                    (arguments-text line)))))
 
 (defun integer-if-whole (value)
-  (if (and (floatp value) (quantity-p value) (= value (round value)))
+  (if (and (floatp value) (bounded-number-p value) (= value (round value)))
       (round value)
       value))
 
@@ -175,7 +175,7 @@ end. Numbers with units are converted to the simulator's own units."
 
 ;;;; What can be typed for an argument
 
-(defgeneric choices (type session typed)
+(defgeneric argument-choices (type session typed)
   (:documentation "Return a list of possible arguments of TYPE, a keyword, in SESSION: strings,
 symbols and numbers. TYPED is the text typed so far; choices that do not begin with TYPED may be
 included. Return NIL if the choices are not known. May signal BAD-LINE, for example without a
@@ -186,7 +186,7 @@ robot.")
       (loop for index below (length (parts-of-kind (session-robot) type))
             collect index))))
 
-(defmacro define-choices (type form)
+(defmacro define-argument-choices (type form)
   "Make the value of FORM the choices for an argument of TYPE, whatever was typed so far."
   `(defmethod choices ((type (eql ,type)) session typed)
      (declare (ignore session typed))
@@ -195,27 +195,27 @@ robot.")
 (defun designator-numbers ()
   (mapcar #'designator-number (live-designators (session-robot))))
 
-(define-choices :designator (designator-numbers))
-(define-choices :destination (designator-numbers))
-(define-choices :designator-type '(local non-local))
-(define-choices :odometer-part '(:pos :ang))
-(define-choices :place-type (mapcar #'place-type-name (all-place-types)))
-(define-choices :rate '(free))
-(define-choices :parameter (mapcar #'parameter-name (all-parameters)))
-(define-choices :switch '(on off))
-(define-choices :off '(off))
-(define-choices :experiment (append (mapcar #'experiment-name (all-experiments)) '(off)))
+(define-argument-choices :designator (designator-numbers))
+(define-argument-choices :destination (designator-numbers))
+(define-argument-choices :designator-type '(local non-local))
+(define-argument-choices :odometer-part '(:pos :ang))
+(define-argument-choices :place-type (mapcar #'place-type-name (all-place-types)))
+(define-argument-choices :rate '(free))
+(define-argument-choices :parameter (mapcar #'parameter-name (all-parameters)))
+(define-argument-choices :switch '(on off))
+(define-argument-choices :off '(off))
+(define-argument-choices :experiment (append (mapcar #'experiment-name (all-experiments)) '(off)))
 
 ;;; Worlds and robots.
 
-(defmethod choices ((type (eql :world)) session typed)
+(defmethod argument-choices ((type (eql :world)) session typed)
   (append (mapcar #'map-name (all-worlds))
           (remove-if-not (lambda (file)
                            (or (uiop:string-suffix-p file "/") (uiop:string-suffix-p file ".lisp")))
-                         (choices :file session typed))))
+                         (argument-choices :file session typed))))
 
-(define-choices :robot-name (robot-names))
-(define-choices :robot-here (current-robot-names))
+(define-argument-choices :robot-name (robot-names))
+(define-argument-choices :robot-here (current-robot-names))
 
 ;;; Files.
 
@@ -230,7 +230,7 @@ them. Names of subdirectories end in a slash."
       (mapcar #'without-directory
               (ignore-errors (append (uiop:subdirectories path) (uiop:directory-files path)))))))
 
-(defmethod choices ((type (eql :file)) session typed)
+(defmethod argument-choices ((type (eql :file)) session typed)
   (declare (ignore session))
   (let* ((slash (position #\/ typed :from-end t))
          (directory (subseq typed 0 (if slash (1+ slash) 0)))
@@ -242,9 +242,9 @@ them. Names of subdirectories end in a slash."
 
 ;;; Names of commands.
 
-(defmethod choices ((type (eql :command)) session typed)
+(defmethod argument-choices ((type (eql :command)) session typed)
   (declare (ignore session))
-  (let ((names (if (items-with-prefix (string-upcase typed) (all-lines) #'line-name)
-                   (mapcar #'line-name (all-lines))
-                   (all-line-names))))
+  (let ((names (if (items-with-prefix (string-upcase typed) (all-line-commands) #'line-name)
+                   (mapcar #'line-name (all-line-commands))
+                   (all-line-command-names))))
     (mapcar #'string-downcase (append names (mapcar #'first *aliases*)))))

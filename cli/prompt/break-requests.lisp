@@ -3,7 +3,7 @@
 (in-package :ars-magna.cli)
 
 (export '(waiting-break-texts restart-choices-text simulator-broken-p other-debugger-text
-          answers-any-break-p))
+          valid-at-any-break-p))
 
 (defvar *session* nil "The session that the debugger asks, in any thread; the newest.")
 
@@ -83,12 +83,12 @@ Any thread may call this function."
 (defun other-debugger-text (simulation)
   "If a debugger other than the prompt's asks about a break in the thread of SIMULATION, return the
 end of a sentence that says so; otherwise NIL."
-  (let ((debugger (debugger-asking (simulation-thread simulation))))
+  (let ((debugger (asking-debugger-text (simulation-thread simulation))))
     (and debugger
          (notany #'simulator-broken-p (sessions-showing simulation))
          (format nil "and ~A waits for the answer" debugger))))
 
-(defun answers-any-break-p (text)
+(defun valid-at-any-break-p (text)
   "True if the line TEXT is Lisp or a comment, and so is valid whatever break is being answered."
   (or (comment-p text) (lisp-p text)))
 
@@ -127,7 +127,7 @@ breaks."))
     (setf *prompt-debugger-hooks* (remove hook *prompt-debugger-hooks* :count 1)
           (global-debugger-hook) (shared-debugger-hook))))
 
-(defun answered-elsewhere-p ()
+(defun other-front-end-answers-p ()
   "True if another front end, such as an editor, answers breaks, and the simulator itself has
 started this thread."
   (let ((hook (global-debugger-hook)))
@@ -137,7 +137,7 @@ started this thread."
   "Call FUNCTION, which runs a prompt, with HOOK as this thread's debugger hook. Threads without a
 prompt may share HOOK."
   (with-debugger-hook (hook)
-    (if (answered-elsewhere-p)
+    (if (other-front-end-answers-p)
         (funcall function)
         (progn (begin-sharing-hook hook)
                (unwind-protect (funcall function)
@@ -156,7 +156,7 @@ prompt may share HOOK."
   (:documentation "The input stream of programs in the thread of a run: it asks the users of prompts
 for each line, or, without a terminal or window, reads from the original input."))
 
-(defun ask-for-answer ()
+(defun ask-for-program-input ()
   "Ask a prompt's user for a program's input line. Return the line, or NIL if the user has gone."
   (restart-case (invoke-debugger (make-condition 'answer-wanted))
     (answer (&optional line)
@@ -174,7 +174,7 @@ else all sessions in its simulation, else the newest session."
 
 (defmethod next-typed-line ((stream asking-text))
   (let ((line (if (sessions-to-ask)
-                  (ask-for-answer)
+                  (ask-for-program-input)
                   (read-line (typed-octets stream) nil))))
     (if line (format nil "~A~%" line) "")))
 

@@ -16,7 +16,7 @@ evaluated, newest first. NEW-P is true if the name had no value when found.")
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
-    (t (multiple-value-bind (name kind) (undefined-name condition)
+    (t (multiple-value-bind (name kind) (undefined-name-of-warning condition)
          (when name
            (pushnew (list name kind (still-undefined-p name kind)) *undefined-names* :test #'equal)
            (muffle-warning condition)))
@@ -50,7 +50,7 @@ report the names in these forms that are still undefined."
   (:documentation "A form in a file that is being loaded has failed; the forms before it were
 evaluated."))
 
-(defun names-location-p (condition)
+(defun condition-has-location-p (condition)
   (or (typep condition 'file-trouble)
       (and (typep condition 'malformed-definition)
            (malformed-definition-place condition))))
@@ -63,7 +63,7 @@ Do nothing outside of COMPILE-FILE."
                                          (reading-location condition)
                                          (compiling-location))
       (cond ((null file))
-            ((names-location-p condition) (funcall tell text))
+            ((condition-has-location-p condition) (funcall tell text))
             (t (funcall tell (format nil "~A~@[, line ~D~]: ~A" file line text)))))))
 
 (defun report-compiler-condition (condition)
@@ -81,7 +81,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
     (handler-bind ((condition (lambda (condition)
                                 (unless (eq condition (shiftf last condition))
                                   (report-compiler-condition condition)))))
-      (call-quietly (lambda () (call-as-unit function))))))
+      (call-quietly (lambda () (call-in-new-unit function))))))
 
 (defun eval-quietly (form)
   "Evaluate FORM. At the end, show the text that FORM wrote to the error output."
@@ -125,7 +125,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
       (when values (fresh-line))
       (format t "~{~A~%~}" (mapcar #'value-line values)))))
 
-(defun check-parenthesis (text position)
+(defun reject-surplus-parenthesis (text position)
   (let ((start (skip-blanks text position)))
     (when (char= #\) (char text start))
       (reject-line "There is one parenthesis too many: ~A~:[~;  Forms before it were evaluated.~]"
@@ -162,7 +162,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
                                           (malformed-definition-clause condition)))))))
     (evaluate session form)))
 
-(defun check-legible (session text start end)
+(defun check-utf-8 (session text start end)
   "Signal BAD-LINE if TEXT from START to END is not UTF-8. TEXT ends with the last line of SESSION."
   (let ((place (position +illegible+ text :start start :end end)))
     (when place
@@ -178,10 +178,10 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
         with form
         do (setf (values text position) (skip-comments session text position))
         until (= (skip-blanks text position) (length text))
-        do (check-parenthesis text position)
+        do (reject-surplus-parenthesis text position)
            (setf start position
                  (values form position text) (read-form session text position))
-           (check-legible session text start position)
+           (check-utf-8 session text start position)
            (check-line-in-parentheses form)
            (check-typed-call form)
            (check-typed-load form)
@@ -194,13 +194,13 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
 
 (defun expand-alias (text &optional known)
   "Return TEXT with leading aliases expanded, one after another, but each alias only once."
-  (multiple-value-bind (name rest) (split-line text)
+  (multiple-value-bind (name rest) (split-first-word text)
     (let ((alias (assoc name *aliases* :test #'string-equal)))
       (if (and alias (not (member alias known)))
           (expand-alias (concatenate 'string (second alias) rest) (cons alias known))
           text))))
 
-(defun unbuffered-p (line)
+(defun line-output-unbuffered-p (line)
   "True if the output of LINE is shown while LINE runs, not only at its end."
   (or (line-full-name line)
       (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH" "WINDOW" "DISPLAY")
@@ -215,7 +215,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
   (let ((arguments (read-arguments line text))
         (*text-width* (text-width session))
         (*asker* (asker-for (session-account session) :typed-p t)))
-    (if (unbuffered-p line)
+    (if (line-output-unbuffered-p line)
         (apply (line-action line) session arguments)
         (write-string (fit-to-window (printing-text ()
                                        (with-output-to-string (*standard-output*)
@@ -237,10 +237,10 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
           (t (let ((text (expand-alias text)))
                (if (lisp-p text)
                    (evaluate-line session text)
-                   (multiple-value-bind (name rest) (split-line text)
+                   (multiple-value-bind (name rest) (split-first-word text)
                      (warn-of-command-in-comment text)
-                     (check-legible session text 0 nil)
-                     (run-line session (find-line name) rest))))))))
+                     (check-utf-8 session text 0 nil)
+                     (run-line session (find-line-command name) rest))))))))
 
 ;;;; Errors
 
@@ -258,8 +258,8 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
 terminal, signal TROUBLE, because the prompt could not be printed, either."
   (when (session-terminal-p session) (error trouble))
   (incf (session-errors session))
-  (write-fresh (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
-               (session-console session)))
+  (write-on-fresh-line (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
+                       (session-console session)))
 
 (defun call-reporting-session-errors (session function)
   (handler-case (funcall function)
@@ -299,7 +299,7 @@ says how to answer. In a trial, the text is empty."
                      robot command plans-p))
             (t " QUIT leaves.")))))
 
-(defun running-code-owner (&optional (calls *user-calls*))
+(defun running-code-owner-text (&optional (calls *user-calls*))
   "Return text that says whose code the thread of CALLS runs, or which form of a file the thread
 loads; NIL if CALLS records neither."
   (let ((origin (and calls (user-calls-origin calls)))
@@ -313,7 +313,7 @@ loads; NIL if CALLS records neither."
     (say-on-error-output (format nil "~@[~A, ~]~@[line ~D: ~]~A"
                                  (and line (account-file account)) line text))))
 
-(defun dropped-text (count)
+(defun dropped-lines-text (count)
   (format nil "~[~:; ~:*~D line~:P that waited ~:*~[~;was~:;were~] dropped; the up arrow brings ~
                ~:*~[~;it~:;them~] back.~]"
           count))
@@ -328,7 +328,7 @@ was running. Abort users' code that blocks the simulator, too."
   (let ((console (session-console session))
         (dropped (discard-waiting-lines (session-input session))))
     (note-answered console)
-    (write-fitted console "Interrupted.~A~A~%" (dropped-text dropped)
+    (write-fitted console "Interrupted.~A~A~%" (dropped-lines-text dropped)
                   (ongoing-work-text session))))
 
 (defun call-guarded (session function)
@@ -337,12 +337,12 @@ was running. Abort users' code that blocks the simulator, too."
     (flet ((look-into (condition) (debug-if-wanted session condition))
            (look-whose (condition)
              (declare (ignore condition))
-             (setf whose (running-code-owner))))
+             (setf whose (running-code-owner-text))))
       (handler-case
           (with-simple-restart (end-line "End the line.")
             (call-reporting-session-errors session
                                            (lambda ()
                                              (handler-bind ((error #'look-into)
                                                             (user-interrupt #'look-whose))
-                                               (call-open-to-interrupts function)))))
+                                               (call-with-held-interrupts function)))))
         (user-interrupt () (report-interrupt session whose))))))

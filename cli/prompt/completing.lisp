@@ -21,7 +21,7 @@ single completion.")
   (let ((slash (position #\/ text :from-end t :end (max 0 (1- (length text))))))
     (if slash (subseq text (1+ slash)) text)))
 
-(defun in-columns (texts width)
+(defun lines-in-columns (texts width)
   "Return TEXTS as a list of lines of at most WIDTH characters, in columns to be read downwards."
   (let* ((column (+ 2 (reduce #'max texts :key #'length)))
          (count (max 1 (floor width column)))
@@ -36,11 +36,13 @@ single completion.")
 (defun list-choices (stream texts)
   "Show TEXTS above the typed line, as many as fit into the window."
   (multiple-value-bind (width height) (funcall (console-window (edited-console stream)))
-    (let* ((lines (in-columns (mapcar #'name-without-directory texts) (1- width)))
+    (let* ((lines (lines-in-columns (mapcar #'name-without-directory texts) (1- width)))
            (room (max 1 (- height 4))))
-      (write-fresh (format nil "~{~A~%~}~:[~;There are more completions. Type more letters.~%~]"
-                           (subseq lines 0 (min room (length lines))) (< room (length lines)))
-                   (edited-console stream))
+      (write-on-fresh-line (format nil
+                                   "~{~A~%~}~:[~;There are more completions. Type more letters.~%~]"
+                                   (subseq lines 0 (min room (length lines))) (< room
+                                                                                 (length lines)))
+                           (edited-console stream))
       (finish-output (edited-console stream)))))
 
 ;;; Completing.
@@ -53,7 +55,7 @@ single completion.")
                                    (subseq (drawn-line-text line) (drawn-line-point line)))
                       start))))
 
-(defun complete (stream start texts after)
+(defun complete-typed-part (stream start texts after)
   "Replace the part of the line from START to the cursor by the longest common beginning of TEXTS,
 followed by AFTER if there is one text. If that adds nothing to the line, list TEXTS."
   (let ((typed (subseq (text-being-typed stream) start (drawn-line-point (drawn-line-of stream))))
@@ -75,7 +77,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
     (when (and *completer* (not *before-program-reads*))
       (multiple-value-bind (start texts after)
           (funcall *completer* (drawn-line-text line) (drawn-line-point line))
-        (when texts (complete stream start texts after))))))
+        (when texts (complete-typed-part stream start texts after))))))
 
 ;;;; What there is
 
@@ -99,7 +101,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
 ;;; Parts of Lisp.
 
 (defun token-char-p (char)
-  (not (or (blank-p char) (find char "()'`,\";|#"))))
+  (not (or (blank-character-p char) (find char "()'`,\";|#"))))
 
 (defun token-start (text point)
   (let ((before (position-if-not #'token-char-p text :end point :from-end t)))
@@ -143,7 +145,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
 ;;; Lisp.
 
 (defun keywords-of (operator)
-  (loop for type in (and operator (fboundp operator) (function-arguments operator))
+  (loop for type in (and operator (fboundp operator) (function-argument-types operator))
         when (and (consp type) (keywordp (first type)))
           collect (first type)))
 
@@ -155,7 +157,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
   "Return the symbols of the current package. Omit its own that name no variable or function."
   (let ((symbols '()))
     (do-symbols (symbol *package* symbols)
-      (when (or (defined-p symbol) (not (eq *package* (symbol-package symbol))))
+      (when (or (symbol-defined-p symbol) (not (eq *package* (symbol-package symbol))))
         (push symbol symbols)))))
 
 (defun symbol-choices (typed operator-p operator)
@@ -176,7 +178,7 @@ functions and macros. If TYPED begins with a colon, return keywords of OPERATOR 
   (let ((quote (open-quote-position text point)))
     (if quote
         (let ((typed (subseq text (1+ quote) point)))
-          (values (1+ quote) (matching-texts typed (choices :file session typed)) "\""))
+          (values (1+ quote) (matching-texts typed (argument-choices :file session typed)) "\""))
         (let* ((start (token-start text point))
                (typed (subseq text start point))
                (operator-p (and (plusp start) (char= #\( (char text (1- start))))))
@@ -224,7 +226,7 @@ NIL if LINE has no more parameters; the start of that argument; and the previous
 where the first argument begins."
   (loop for before = nil then parameter
         for parameter in (append (line-parameters line) '(nil))
-        for position = (or (position-if-not #'blank-p text :start start) (length text))
+        for position = (or (position-if-not #'blank-character-p text :start start) (length text))
         for end = (and parameter (< position (length text)) (argument-end parameter text position))
         unless end
           return (values parameter position before)
@@ -235,14 +237,15 @@ where the first argument begins."
                         (< start (length text))
                         (dimension-of (line-parameter-type parameter)))))
     (and dimension
-         (digit-char-p (char text (position-if-not #'blank-p text :end start :from-end t)))
+         (digit-char-p (char text
+                             (position-if-not #'blank-character-p text :end start :from-end t)))
          (unit-names dimension))))
 
 (defun argument-completion-values (start texts quoted-p)
   "Return the values of COMPLETIONS-IN for an argument that begins at START and has the completions
 TEXTS. Quote the completions if QUOTED-P is true (the argument begins with a double quote) or one of
 TEXTS has a blank."
-  (if (or quoted-p (some (lambda (text) (some #'blank-p text)) texts))
+  (if (or quoted-p (some (lambda (text) (some #'blank-character-p text)) texts))
       (values start (mapcar (lambda (text) (uiop:strcat "\"" text)) texts) "\" ")
       (values start texts " ")))
 
@@ -253,7 +256,7 @@ TEXTS has a blank."
       (case type
         (:line (line-completions session text start))
         (:form (lisp-completions session text (length text)))
-        (:map-words (word-completions text (choices type session text)))
+        (:map-words (word-completions text (argument-choices type session text)))
         (:specification (specification-completions text (length text)))
         (t (let* ((typed (subseq text start))
                   (quoted-p (starts-with-subseq "\"" typed))
@@ -261,21 +264,22 @@ TEXTS has a blank."
              (argument-completion-values
               start
               (matching-texts begun (append (unit-choices before text start)
-                                            (and type (choices type session begun))))
+                                            (and type (argument-choices type session begun))))
               quoted-p)))))))
 
 (defun word-completions (text words)
-  (let ((start (1+ (or (position-if #'blank-p text :from-end t) -1))))
+  (let ((start (1+ (or (position-if #'blank-character-p text :from-end t) -1))))
     (argument-completion-values start (matching-texts (subseq text start) words) nil)))
 
 (defun line-completions (session text start)
-  (let* ((start (or (position-if-not #'blank-p text :start start) (length text)))
+  (let* ((start (or (position-if-not #'blank-character-p text :start start) (length text)))
          (end (if (< start (length text)) (token-end text start) start))
          (typed (subseq text start end)))
     (cond ((starts-with-subseq "(" typed) (lisp-completions session text (length text)))
           ((= end (length text))
-           (values start (matching-texts typed (choices :command session typed)) " "))
-          (t (let ((line (find-line (split-line (expand-alias (format nil "~A " typed))))))
+           (values start (matching-texts typed (argument-choices :command session typed)) " "))
+          (t (let ((line (find-line-command (split-first-word (expand-alias (format nil "~A "
+                                                                                    typed))))))
                (argument-completions session line text end))))))
 
 (defun completions-in (session text point)

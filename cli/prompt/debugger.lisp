@@ -49,12 +49,12 @@
          (start (position 'invoke-debugger calls :key #'first)))
     (loop for call in (if start (nthcdr (1+ start) calls) calls)
           until (member (first call)
-                        '(eval-quietly call-user-code call-until-error call-with-care))
+                        '(eval-quietly call-user-code call-until-error call-handling-trouble))
           do (write-trimmed-line
               "  ~A" (escape-controls (cut (one-line (format-briefly nil "~S" call)) 300))))))
 
-(defun debug-line (session break-request text)
-  (flet ((says-p (word) (string-equal word (split-line text))))
+(defun run-debug-line (session break-request text)
+  (flet ((says-p (word) (string-equal word (split-first-word text))))
     (cond ((comment-p text))
           ((lisp-p text) (let ((form (read-form session text)))
                            (call-in-broken-thread session break-request
@@ -66,7 +66,7 @@
           ((says-p "plan-tree")
            (call-in-broken-thread session break-request
                                   (lambda () (print-plans *standard-output* t))))
-          (t (multiple-value-bind (word rest) (split-line text)
+          (t (multiple-value-bind (word rest) (split-first-word text)
                (continue-by-restart session break-request (restart-named word break-request)
                                     rest))))))
 
@@ -75,7 +75,7 @@
 REST or, if REST is blank, from the next line."
   (let* ((needs-value-p (and (restart-needs-value-p restart) (not (broken-here-p break-request))))
          (answer (cond ((not needs-value-p) nil)
-                       ((every #'blank-p rest) (read-input session "Value> "))
+                       ((every #'blank-character-p rest) (read-input session "Value> "))
                        (t rest))))
     (unless (and needs-value-p (null answer))
       (flet ((continue-with-answer ()
@@ -89,7 +89,7 @@ REST or, if REST is blank, from the next line."
 (defun read-debug-line (session break-request)
   (let ((text (read-input session "Break> ")))
     (if text
-        (debug-line session break-request text)
+        (run-debug-line session break-request text)
         (setf (session-over-p session) t))))
 
 ;;; How a program waits.
@@ -236,7 +236,7 @@ and Lisp runs other programs, too."
           ;; Without any, as when it has just ended, Lisp's own debugger comes up.
           (*session* (debugger-disabled-hook condition hook)))))
 
-(defun make-process-own ()
+(defun mark-process-as-own ()
   "Mark this Lisp, about to be saved as an image, as a process that runs only this program."
   (setf *own-process-p* t
         (debugger-hook) 'debugger-disabled-hook))
@@ -260,12 +260,12 @@ and Lisp runs other programs, too."
 
 (defvar *reported-thread-errors* '()
   "The messages already reported on errors in threads of programs; a message is reported once.")
-(defvar *reported-lock* (make-lock "reported thread errors"))
+(defvar *reported-thread-errors-lock* (make-lock "reported thread errors"))
 
 (defun report-thread-error (condition)
   "Write a new message on CONDITION to the error output, but at most +MOST-THREAD-ERRORS+ messages."
   (let* ((text (thread-error-text condition))
-         (count (with-lock (*reported-lock*)
+         (count (with-lock (*reported-thread-errors-lock*)
                   (unless (or (member text *reported-thread-errors* :test #'string=)
                               (< +most-thread-errors+ (length *reported-thread-errors*)))
                     (length (push text *reported-thread-errors*))))))

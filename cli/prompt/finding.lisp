@@ -2,18 +2,18 @@
 
 (in-package :ars-magna.cli)
 
-(export '(all-lines find-line))
+(export '(all-line-commands find-line-command))
 
-(defun all-lines ()
+(defun all-line-commands ()
   "Return a list of all line commands: the prompt's own, then the robot's."
-  (append *lines*
+  (append *line-commands*
           (remove-if (lambda (line)
-                       (find (line-name line) *lines* :key #'line-name :test #'string=))
+                       (find (line-name line) *line-commands* :key #'line-name :test #'string=))
                      (robot-line-commands))))
 
-(defun all-line-names ()
+(defun all-line-command-names ()
   "Return a list of the names of all line commands, and of the functions that line commands call."
-  (let ((lines (all-lines)))
+  (let ((lines (all-line-commands)))
     (remove-duplicates (append (mapcar #'line-name lines)
                                (remove nil (mapcar #'line-full-name (robot-line-commands))))
                        :test #'string= :from-end t)))
@@ -78,13 +78,13 @@
   (let ((plan (find-procedure name nil)))
     (and plan (format nil "~A is a plan: PLAN ~A." (procedure-name plan) (plan-usage plan)))))
 
-(defun line-named (name)
-  (find name (all-lines) :key #'line-name :test #'string-equal))
+(defun line-command-named (name)
+  (find name (all-line-commands) :key #'line-name :test #'string-equal))
 
-(defun line-advice (name)
-  (let ((line (line-named name)))
+(defun line-command-advice (name)
+  (let ((line (line-command-named name)))
     (and line (format nil "~A is a command of this prompt, typed without parentheses: ~A."
-                      (line-name line) (usage line)))))
+                      (line-name line) (line-command-usage line)))))
 
 (defun parameter-advice (name)
   (let ((parameter (find-parameter name nil)))
@@ -96,23 +96,24 @@
   "If NAME, such as TURN(90), begins with the name of a line command, return a sentence on how to
 type the line command; else NIL."
   (let ((place (position #\( name)))
-    (and place (plusp place) (line-advice (subseq name 0 place)))))
+    (and place (plusp place) (line-command-advice (subseq name 0 place)))))
 
-(defun reject-unknown (name)
+(defun reject-unknown-command (name)
   (let ((hint (or (hint-for name) (plan-advice name) (parameter-advice name) (call-advice name)
                   (and (public-function-named name)
                        (format nil "~A is Lisp, in parentheses: (~(~:*~A~) ...)." name)))))
     (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
                  name hint
                  (and (null hint)
-                      (nearest-name name (append (mapcar #'first *aliases*) (all-line-names)))))))
+                      (nearest-name name (append (mapcar #'first *aliases*)
+                                                 (all-line-command-names)))))))
 
-(defun line-with-prefix (name)
+(defun line-command-with-prefix (name)
   "Return the line command whose name, or else full name, begins with NAME. Of several line
 commands, return the one whose name is the beginning of all the others. Otherwise signal BAD-LINE."
-  (let ((candidates (or (items-with-prefix name (all-lines) #'line-name)
+  (let ((candidates (or (items-with-prefix name (all-line-commands) #'line-name)
                         (items-with-prefix name (robot-line-commands) #'line-full-name))))
-    (cond ((null candidates) (reject-unknown name))
+    (cond ((null candidates) (reject-unknown-command name))
           ;; STOP, not STOP-PLAN.
           ((find-if (lambda (line) (every (lambda (other)
                                             (starts-with-subseq (line-name line)
@@ -121,15 +122,15 @@ commands, return the one whose name is the beginning of all the others. Otherwis
                     candidates))
           (t (reject-ambiguous name (mapcar #'line-name candidates) (hint-for name))))))
 
-(defun find-line (name)
+(defun find-line-command (name)
   "Return the line command for NAME, a string of any case. NAME may be the command's name, the full
 name of its function, another program's name for the command, or the beginning of a name. Of several
 line commands, return the one whose name is the beginning of all the others. Signals BAD-LINE."
   (let* ((typed (string-upcase name))
          (name (or (second (assoc typed *foreign-line-names* :test #'string=)) typed)))
-    (or (line-named name)
+    (or (line-command-named name)
         (find name (robot-line-commands) :key #'line-full-name :test #'equal)
-        (line-with-prefix name))))
+        (line-command-with-prefix name))))
 
 ;;; Undefined functions.
 
@@ -138,7 +139,7 @@ line commands, return the one whose name is the beginning of all the others. Sig
   (let ((name (and (typep condition 'undefined-function) (cell-error-name condition))))
     (when (and name (symbolp name))
       (or (plan-advice name)
-          (line-advice (symbol-name name))
+          (line-command-advice (symbol-name name))
           (multiple-value-bind (symbol status) (find-symbol (symbol-name name) :ars-worlds)
             (and (eq :external status)
                  (fboundp symbol)
@@ -153,12 +154,13 @@ line commands, return the one whose name is the beginning of all the others. Sig
              (fboundp (first form))
              (not (macro-function (first form)))
              (not (special-operator-p (first form))))
-    (multiple-value-bind (parameters known-p) (function-arguments (first form))
-      (let ((trouble (and known-p (arguments-misfit-text (shape-of parameters) (rest form)))))
+    (multiple-value-bind (parameters known-p) (function-argument-types (first form))
+      (let ((trouble (and known-p
+                          (arguments-misfit-text (lambda-list-shape parameters) (rest form)))))
         (when trouble
           (reject-line "~(~A~) takes ~A, not ~A.~@[ ~A~]" (first form)
-                       (shape-text (lambda-list-of (first form))) trouble
-                       (line-advice (symbol-name (first form)))))))))
+                       (lambda-list-text (lambda-list-of (first form))) trouble
+                       (line-command-advice (symbol-name (first form)))))))))
 
 ;; Lisp's own STEP and GO, which are called like lines, do nothing with a number. An undefined
 ;; function is reported before its arguments, such as DEG, are evaluated.
@@ -167,8 +169,8 @@ line commands, return the one whose name is the beginning of all the others. Sig
   (when (and (typep form '(cons symbol))
              (or (typep form '(cons (member step go) (or null (cons real))))
                  (not (fboundp (first form))))
-             (line-named (symbol-name (first form))))
-    (reject-line "~A" (line-advice (symbol-name (first form))))))
+             (line-command-named (symbol-name (first form))))
+    (reject-line "~A" (line-command-advice (symbol-name (first form))))))
 
 ;;; New variables.
 
@@ -191,10 +193,10 @@ as in turn 1; go 3. Otherwise return NIL."
     (when (and start
                (plusp start)
                (not (find #\" text :end start))
-               (not (blank-p (char text (1- start)))))
+               (not (blank-character-p (char text (1- start)))))
       (let ((comment (string-trim " ;" (subseq text start))))
         (and (string/= "" comment)
-             (line-named (split-line comment))
+             (line-command-named (split-first-word comment))
              comment)))))
 
 (defun warn-of-command-in-comment (text)

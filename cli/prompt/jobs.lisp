@@ -55,7 +55,7 @@ the outcome itself. RESOURCE is the robot or part that carries out a single comm
       (asking (simulation)
         (add-observer #'look simulation)
         (look simulation))
-      (unwind-protect (loop until (or (wait-and-serve true 0.2)
+      (unwind-protect (loop until (or (serve-and-wait-once true 0.2)
                                       ;; The answer to a break may have stopped its clock.
                                       (not (live-p simulation))
                                       (paused-for-good-p simulation)
@@ -184,7 +184,7 @@ returns the value of OUTCOME-OF-JOBS for these jobs."
       (dolist (job jobs) (setf (job-apart-p job) t))
       (lambda () (outcome-of-jobs jobs lisp-p)))))
 
-(defun unfinished-p (session)
+(defun unfinished-work-p (session)
   "True if a job or request of SESSION has not ended because time stands still."
   (and *simulation*
        (or (jobs-under-way session)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(line usage))
+(export '(line line-command-usage))
 
 ;;; The prompt's own commands are defined here and in the files that follow, each once, by
 ;;; DEFINE-LINE. The robot's commands come from the command layer (see below). HELP, the menus and
@@ -31,16 +31,16 @@ keywords, such as :FILE, stand for the text up to the next blank. CHOICES depend
 (defmethod print-object ((line line) stream)
   (print-unreadable-object (line stream :type t) (write-string (line-name line) stream)))
 
-(defvar *lines* '() "The line commands made by DEFINE-LINE, in order of definition.")
+(defvar *line-commands* '() "The line commands made by DEFINE-LINE, in order of definition.")
 
 (defvar *aliases* '() "Lists (name text), in upper case and as typed: the aliases defined by
 ALIAS.")
 
 (defun register-line (line)
-  (let ((old (member (line-name line) *lines* :key #'line-name :test #'string=)))
+  (let ((old (member (line-name line) *line-commands* :key #'line-name :test #'string=)))
     (if old
         (setf (first old) line)
-        (setf *lines* (append *lines* (list line))))
+        (setf *line-commands* (append *line-commands* (list line))))
     (line-name line)))
 
 (defmacro define-line (name (session &rest parameters) (family &rest details) sentence &body body)
@@ -64,7 +64,7 @@ SENTENCE is its help; DETAILS, strings, are paragraphs below the parameters."
 (defgeneric argument-description (type)
   (:documentation "Return text that says what to type for an argument of TYPE, a symbol."))
 
-(defun usage (line)
+(defun line-command-usage (line)
   "Return how to type LINE, such as \"POS x y\"."
   (format nil "~A~{ ~A~}" (line-name line)
           (loop for parameter in (line-parameters line)
@@ -77,7 +77,7 @@ SENTENCE is its help; DETAILS, strings, are paragraphs below the parameters."
       (argument-description (line-parameter-type parameter))))
 
 (defun arguments-text (line)
-  (format nil "~A~:[ takes no arguments~;~:*: ~{~A is ~A~^, ~}~]." (usage line)
+  (format nil "~A~:[ takes no arguments~;~:*: ~{~A is ~A~^, ~}~]." (line-command-usage line)
           (loop for parameter in (line-parameters line)
                 collect (line-parameter-name parameter) collect (parameter-description parameter))))
 
@@ -122,7 +122,7 @@ before PARAMETER, or NIL."
 
 (defun type-keyword (type) (make-keyword (symbol-name type)))
 
-(defun part-family (command)
+(defun help-family-of-command (command)
   (let ((type (type-keyword (spec-type (command-resource command)))))
     (case type
       (:robot (case (command-family command)
@@ -152,10 +152,10 @@ before PARAMETER, or NIL."
          (start (search "-DESIG" name :from-end t)))
     (if start (subseq name 0 (+ start 6)) name)))
 
-(defun line-for-command (command)
+(defun line-command-for (command)
   (make-line :name (line-name-of command)
              :full-name (string-upcase (command-name command))
-             :family (part-family command)
+             :family (help-family-of-command command)
              :parameters (append (unless (robot-resource-p command)
                                    (list (line-parameter-for (command-resource command))))
                                  (mapcar #'line-parameter-for (command-parameters command)))
@@ -172,7 +172,7 @@ before PARAMETER, or NIL."
 (defun robot-line-commands ()
   (let ((commands (all-commands)))
     (unless (equal commands (car *robot-line-cache*))
-      (setf *robot-line-cache* (cons commands (mapcar #'line-for-command commands))))
+      (setf *robot-line-cache* (cons commands (mapcar #'line-command-for commands))))
     (cdr *robot-line-cache*)))
 
 ;;; Those that differ.

@@ -35,7 +35,7 @@ that runs by itself and signals the error, or NIL."
   (or (= 1 number)
       (and (zerop (mod number 10)) (power-of-ten-p (/ number 10)))))
 
-(defun repeated-often-p (message counts)
+(defun count-repeated-message (message counts)
   "Count MESSAGE in the table COUNTS. Return true if MESSAGE has come too often to be shown."
   (let* ((tally (tally-for message counts)) (count (incf (tally-count tally))))
     (setf (tally-tick tally) (message-tick message))
@@ -134,7 +134,7 @@ between, a message says how to hide such messages.")
 
 ;;; Commands from others than the prompt, such as plans, end with the same messages.
 
-(defun left-to-program-p (message)
+(defun has-program-continuation-p (message)
   "True if MESSAGE reports the end of a command, and a program's continuation got that report."
   (and (message-robot message)
        (message-told-p message)
@@ -158,10 +158,10 @@ ended. Add file and line number to errors and warnings in a script."
                        (message-text message)))
          (account (listener-account listener)))
     (if (member (message-kind message) '(:error :warning))
-        (text-with-location account text (line-of-message account message))
+        (text-with-location account text (line-number-of-message account message))
         text)))
 
-(defun write-painted (message listener out)
+(defun write-colored-message (message listener out)
   (let ((kind (if (from-program-p message) :others (message-kind message)))
         (text (with-output-to-string (text)
                 (write-message message text (full-message-text message listener)))))
@@ -173,7 +173,7 @@ ended. Add file and line number to errors and warnings in a script."
 (defun write-messages (messages listener)
   (let ((console (listener-console listener))
         (text (with-output-to-string (out)
-                (dolist (message messages) (write-painted message listener out)))))
+                (dolist (message messages) (write-colored-message message listener out)))))
     (if (and (prompt-unanswered-p console) (eq (message-kind (first messages)) :message))
         (write-after-prompt (fit-to-window text console (console-prompt console)) console)
         (write-fitted console "~A" text))))
@@ -182,24 +182,26 @@ ended. Add file and line number to errors and warnings in a script."
   "Count the error MESSAGE in LISTENER, and in its account if an earlier line caused the error."
   (let ((account (listener-account listener)))
     (incf (listener-errors listener))
-    (when (and account (not (eql (line-of-message account message) (last-line-number account))))
+    (when (and account
+               (not (eql (line-number-of-message account message) (last-line-number account))))
       (incf (account-errors account))
       ;; That line may wait for time to pass.
-      (let ((waiting (assoc (line-of-message account message) (account-waiting account))))
+      (let ((waiting (assoc (line-number-of-message account message) (account-waiting account))))
         (when waiting (setf (third waiting) nil))))))
 
 (defgeneric error-counts-p (message listener)
   (:documentation "True if LISTENER counts the error MESSAGE. Errors that a plan or program may
 handle do not count."))
 
-(defun messages-for (listener messages)
+(defun count-and-select-messages (listener messages)
   "Count the errors among MESSAGES, and return those that LISTENER is to show."
   (dolist (message messages)
     (when (and (eq :error (message-kind message)) (error-counts-p message listener))
       (count-error listener message)))
   (remove-if (lambda (message) (and (eq :error (message-kind message))
                                     (listener-terminal-p listener)
-                                    (repeated-often-p message (listener-error-counts listener))))
+                                    (count-repeated-message message
+                                                            (listener-error-counts listener))))
              (if (listener-quiet-p listener) (remove-if #'from-program-p messages) messages)))
 
 (defun notes-on-messages (listener messages)
@@ -214,7 +216,7 @@ handle do not count."))
   (with-lock ((listener-lock listener))
     (setf (listener-news-p listener) nil)
     (let ((console (listener-console listener))
-          (messages (messages-for listener messages)))
+          (messages (count-and-select-messages listener messages)))
       (when (and messages (not flush-all-errors*))
         (printing-text ()
           (or (report-messages (listener-account listener) messages)

@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.cli)
 
-(export '(*whereabouts-hooks* show-definition-messages go-to-run run-after announce-run
-          live-run-of-robot run-description in-trial-or-fork-p trial-or-fork-text simulation-pace))
+(export '(*whereabouts-hooks* show-definition-messages go-to-run run-to-continue-in announce-run
+          live-run-of-robot run-description in-trial-or-fork-p trial-or-fork-text
+          trial-or-fork-pace))
 
 ;;; Each session has its thread, robot and current simulation. Messages of a simulation are shown by
 ;;; all sessions in it, and each of them can answer a break in its thread.
@@ -44,7 +45,7 @@ plan, or NIL. The item prints as TEXT. SESSION shows the message even if SESSION
 (defmethod print-object ((verdict verdict) stream)
   (write-string (verdict-text verdict) stream))
 
-(defun receivers (message session)
+(defun message-receivers (message session)
   "SESSION has taken MESSAGE from a queue. Return the sessions that show MESSAGE: the session named
 in MESSAGE and the sessions in the run of MESSAGE; if there are none, SESSION."
   (or (union (let* ((item (first (message-items message)))
@@ -55,7 +56,7 @@ in MESSAGE and the sessions in the run of MESSAGE; if there are none, SESSION."
 
 (defun deliver-messages (session messages)
   "Show MESSAGES, which SESSION has taken from a queue, each in the sessions from RECEIVERS."
-  (let ((receivers (mapcar (lambda (message) (receivers message session)) messages)))
+  (let ((receivers (mapcar (lambda (message) (message-receivers message session)) messages)))
     (dolist (receiver (remove-duplicates (cons session (apply #'append receivers))))
       (print-messages receiver (loop for message in messages
                                      for those in receivers
@@ -197,7 +198,7 @@ A run may be NIL. A headless run stands still during the calls.")
   (let ((session (session-in-fork-or-trial simulation)))
     (and session (if (session-trial session) "a trial" "a fork"))))
 
-(defun simulation-pace (simulation)
+(defun trial-or-fork-pace (simulation)
   "Return how time passes in SIMULATION, which a prompt has entered by TRIAL or FORK: :RUNNING,
 :PAUSED, :ENDED or :FORKED. The second value is the rate or NIL. Return NIL for other simulations."
   (let ((session (session-in-fork-or-trial simulation)))
@@ -219,14 +220,14 @@ A run may be NIL. A headless run stands still during the calls.")
          (simulation (and robot (robot-simulation robot))))
     (and simulation (live-p simulation) (not (simulation-over simulation)) simulation)))
 
-(defun run-after (simulation robot-name)
+(defun run-to-continue-in (simulation robot-name)
   "Return the live run where a prompt for ROBOT-NAME continues after the end of SIMULATION, and the
 name of the robot to command there. Return NIL if there is no such run."
   (let ((own (live-run-of-robot robot-name))
         (next (gethash simulation *replaced-runs*)))
     (cond (own (values own robot-name))
           ((null next) nil)
-          ((simulation-over (first next)) (apply #'run-after next))
+          ((simulation-over (first next)) (apply #'run-to-continue-in next))
           (t (values-list next)))))
 
 ;;; Others are told.
@@ -261,7 +262,7 @@ show messages of SIMULATION. Do nothing if SESSION already does. Any thread may 
 (defun continue-in-next-run (session)
   "Only in SESSION's thread: if SESSION's run is over, continue in any run that follows."
   (when (and *simulation* (simulation-over *simulation*))
-    (multiple-value-bind (simulation name) (run-after *simulation* *prompt-robot*)
+    (multiple-value-bind (simulation name) (run-to-continue-in *simulation* *prompt-robot*)
       (when simulation
         (announce-run session simulation name)
         (go-to-run simulation)

@@ -25,20 +25,20 @@ NIL if it contains Lisp or lines of the prompt."
 
 (defun check-form-of-file (form path)
   "Signal BAD-LINE if FORM, read while loading the file PATH, is the name of a line command."
-  (when (and (symbolp form) (not (boundp form)) (line-named (symbol-name form)))
+  (when (and (symbolp form) (not (boundp form)) (line-command-named (symbol-name form)))
     (reject-line "~A is a command of the prompt. The file looks like a script of lines: ars-magna ~
                   ~A."
                  form (native-name path))))
 
 (defun start-of-form (text start)
   "Return the start of the next form in TEXT from START on; the length of TEXT if there is none."
-  (loop for position = (or (position-if-not #'blank-p text :start start) (length text))
+  (loop for position = (or (position-if-not #'blank-character-p text :start start) (length text))
         for end = (and (< position (length text)) (skip-comment text position))
         while end
         do (setf start end)
         finally (return position)))
 
-(defun only-defines-p (path)
+(defun file-only-defines-p (path)
   (ignore-errors
    (let ((text (file-text path)) (robot-p nil) (*read-eval* nil))
      (loop for (form end) = (multiple-value-list
@@ -81,7 +81,7 @@ NIL if it contains Lisp or lines of the prompt."
   "Call FUNCTION. Signal errors in FUNCTION as FILE-TROUBLE with FILE and the line number that the
 function LINE returns for the condition. For NIL, LINE returns the number of the line being loaded."
   (handler-bind ((error (lambda (condition)
-                          (unless (names-location-p condition)
+                          (unless (condition-has-location-p condition)
                             (error 'file-trouble :file file :cause condition
                                                  :line (funcall line condition))))))
     (call-recording-location (lambda () (format nil "~A, line ~D" file (funcall line nil)))
@@ -111,7 +111,7 @@ does not end, return the number of the line of START, where the form begins."
 
 (defun load-each-form (path)
   (let* ((text (file-text path))
-         (stream (make-growing-text text 0 (constantly nil)))
+         (stream (make-growing-text-stream text 0 (constantly nil)))
          (file (native-name path))
          (*package* *package*) (*readtable* *readtable*)
          (*load-pathname* path) (*load-truename* (truename path)))

@@ -124,7 +124,7 @@
   (unless (shiftf (open-trial-begun-p trial) t)
     (import-robot-names (current-robot-names))
     (when (display-wanted-p session)
-      (announce-display (session-robot) '()))))
+      (open-display-or-report (session-robot) '()))))
 
 (defun run-line-in-trial (session trial)
   (call-outside-trial
@@ -135,7 +135,7 @@
        (call-guarded session (lambda ()
                                (when (can-poll-input-p session)
                                  (loop until (await-typed-line session 1)))
-                               (let ((*while-typing* #'serve-other-threads))
+                               (let ((*typing-callback* #'serve-other-threads))
                                  (run-nested-line session))))
        (report-changed-trial session trial before))
      (call-guarded session (lambda () (show-messages session)))

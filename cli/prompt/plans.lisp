@@ -65,7 +65,7 @@ yet.")
         (*print-pretty* nil))
     (printing-text () (funcall function))))
 
-(defun user-text (function object)
+(defun text-in-user-syntax (function object)
   "Return FUNCTION's string for OBJECT on one line, with names and numbers as users type them."
   (cut (one-line (call-in-user-syntax (lambda () (funcall function object)))) 300))
 
@@ -80,7 +80,7 @@ yet.")
   (make-verdict (format nil "~(~A~) ~?" (plan-job-plan job) control arguments)
                 (plan-job-session job)))
 
-(defmacro with-messages-to ((job) &body body)
+(defmacro with-messages-for-job ((job) &body body)
   "Run BODY. Messages of BODY belong to the simulation of JOB and to the line that started JOB."
   `(let ((*message-queue* (simulation-messages (plan-job-simulation ,job)))
          (*request-origin* (plan-job-asker ,job)))
@@ -96,7 +96,7 @@ yet.")
 (defmethod error-counts-p (message (session session))
   (and (null (session-trial session))
        (or (verdict-p (first (message-items message)))
-           (not (or (left-to-program-p message)
+           (not (or (has-program-continuation-p message)
                     (and (waiting-for-plan-p session) (not (about-line-request-p message)))
                     (and (from-program-p message)
                          (some #'job-verdict-p (jobs-under-way session))))))))
@@ -109,19 +109,20 @@ yet.")
 
 (defun report-plan-end (job)
   (let ((result (task-result (plan-job-task job))))
-    (with-messages-to (job)
+    (with-messages-for-job (job)
       (case (task-state (plan-job-task job))
         (:succeeded (message-set (make-plan-verdict job "succeeded: ~A"
-                                                    (user-text #'safe-text result))))
+                                                    (text-in-user-syntax #'safe-text result))))
         (:failed (note-failure job result)
                  (error-set (make-plan-verdict
                              job "failed: ~A. PLANS tells more."
-                             (string-right-trim "." (user-text #'failure-reason-text result)))))
+                             (string-right-trim "." (text-in-user-syntax #'failure-reason-text
+                                                                         result)))))
         (t (message-set (make-plan-verdict job "was stopped.")))))))
 
 (defun report-stuck-plan (job)
   "Queue a message that says what the plan of JOB waits for in vain, and what could be done."
-  (with-messages-to (job)
+  (with-messages-for-job (job)
     (destructuring-bind (waits advice) (plan-job-stuck job)
       (if (session-patient-p (plan-job-session job))
           (error-set (make-plan-verdict
@@ -147,10 +148,12 @@ yet.")
 could be done. Otherwise return NIL. Call this function while no plan reacts."
   (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
     (let ((tasks (waiting-parts task)))
-      (list (user-text (lambda (tasks)
-                         (format nil "waits for ~A" (or (text-of-waits tasks) "what cannot come")))
-                       tasks)
-            (let ((advice (one-line (call-in-user-syntax (lambda () (advice-on-stillness tasks))))))
+      (list (text-in-user-syntax (lambda (tasks)
+                                   (format nil "waits for ~A"
+                                           (or (text-of-waits tasks) "what cannot come")))
+                                 tasks)
+            (let ((advice (one-line (call-in-user-syntax (lambda ()
+                                                           (advice-on-endless-waits tasks))))))
               (and (string/= "" advice) (cut advice 1000)))))))
 
 (defun note-if-stuck (job runner)
@@ -167,7 +170,7 @@ the next check to RUNNER. Return the result of the last check."
       (report-stuck-plan job)
       (when (session-patient-p (plan-job-session job))
         (stop-plan runner (plan-job-task job))))
-    (ars-magna.rpl:post runner (lambda () (note-if-stuck job runner)))
+    (ars-magna.rpl:post-entry runner (lambda () (note-if-stuck job runner)))
     stuck))
 
 (defun watch-plan (job runner)
@@ -208,7 +211,7 @@ the next check to RUNNER. Return the result of the last check."
 
 (defmethod await-job ((job plan-job))
   (cond ((live-p (plan-job-simulation job))
-         (loop until (or (wait-and-serve (plan-job-told job) 0.2)
+         (loop until (or (serve-and-wait-once (plan-job-told job) 0.2)
                          (paused-for-good-p (plan-job-simulation job))))
          (show-messages (plan-job-session job)))
         (t (await-plan-headless job))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(run-session prompt run-session-apart interrupt-session end-session enter-line
+(export '(run-session prompt run-additional-session interrupt-session end-session enter-line
           running-line-p abandon-session answerable-by-others-p))
 
 (defun waits-for-time-p (session jobs inbox)
@@ -20,7 +20,7 @@ of SESSION, and INBOX the waiting requests of the simulation."
   (let ((jobs (session-jobs session)) (inbox (waiting-requests))
         (break-request (first (session-breaks session))))
     (if break-request
-        (debug-line session break-request text)
+        (run-debug-line session break-request text)
         (run-text session text))
     (when (and (session-terminal-p session) (waits-for-time-p session jobs inbox))
       (write-fitted (session-console session)
@@ -30,7 +30,7 @@ of SESSION, and INBOX the waiting requests of the simulation."
   (note-line-begun (session-account session) (if (comment-p text) nil text)
                    (count-of-lines-read (session-input session)) (session-errors session)))
 
-(defun begin-without-comments (session text trouble)
+(defun begin-line-without-comments (session text trouble)
   "Begin the line TEXT of SESSION, and return TEXT without comments between #| and |#. If the line
 is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-TOO-LONG."
   (record-line-begun session (if trouble (line-beginning trouble) text))
@@ -44,7 +44,7 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
   (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
 
-(defun find-run-and-robot (session)
+(defun select-run-and-robot (session)
   "Make SESSION command its robot, in a run that continues, and show messages of that run."
   (unless (in-trial-or-fork-p session)
     (when (session-place session) (funcall (session-place session)))
@@ -55,13 +55,13 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
 (defun run-next-line (session)
   "Read a line of SESSION and run it; at the end of input, end the session."
   (call-whereabouts-hooks session)
-  (find-run-and-robot session)
+  (select-run-and-robot session)
   (when (session-account session) (report-last-line session))
   (multiple-value-bind (text trouble) (unless (stopped-by-error-p session) (read-next-line session))
     (cond (text
            ;; While it was typed, its run may have ended and another begun.
-           (unless (session-breaks session) (find-run-and-robot session))
-           (run-with-time-notice session (begin-without-comments session text trouble)))
+           (unless (session-breaks session) (select-run-and-robot session))
+           (run-with-time-notice session (begin-line-without-comments session text trouble)))
           (t (setf (session-over-p session) t
                    (reader-ended-p (session-reader session))
                    (not (session-terminal-p session)))))))
@@ -96,11 +96,11 @@ time stands still, report that the line waits."
            (call-guarded session (lambda () (show-messages session))))
   (when (session-account session) (call-guarded session (lambda () (report-last-line session))))
   (unless (or (session-terminal-p session) (session-next-robot session))
-    (report-unfinished session)))
+    (report-unfinished-work session)))
 
-(defun report-unfinished (session)
+(defun report-unfinished-work (session)
   "Report an error if requests of SESSION, which has no user, wait because time stands still."
-  (when (and (unfinished-p session)
+  (when (and (unfinished-work-p session)
              (or (not (live-p *simulation*)) (paused-without-steps-p *simulation*)))
     (report-session-error
      session (format nil "Time stands still, so not all requests have ended. RESUME continues."))
@@ -113,7 +113,7 @@ time stands still, report that the line waits."
          (*completer* (lambda (text point) (completions-in session text point)))
          (*waits-while-paused-p* (session-terminal-p session))
          (*default-robot-function* #'session-robot)
-         (*robot-to-drive* #'robot-commanded)
+         (*robot-to-drive* #'robot-of-prompt)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
     (funcall function)))
 
@@ -155,7 +155,7 @@ E)."
 
 ;;; Each has its own thread, robot and current simulation.
 
-(defun run-session-apart (session simulation robot-name)
+(defun run-additional-session (session simulation robot-name)
   "Read and run lines of SESSION in this thread, beside other sessions, until QUIT or the end of
 input. The lines command the robot ROBOT-NAME of SIMULATION. Return SESSION."
   (let ((*session* nil)

@@ -94,7 +94,7 @@ NIL if NAME is no quantity."
 
 (defun unit-after (text position)
   "Return the unit, a list, that follows POSITION and blanks in TEXT, and its end; or else NIL."
-  (let* ((start (or (position-if-not #'blank-p text :start position) (length text)))
+  (let* ((start (or (position-if-not #'blank-character-p text :start position) (length text)))
          (end (word-end text start))
          (unit (find-unit (subseq text start end))))
     (and unit (values unit end))))

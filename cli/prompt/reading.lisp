@@ -25,7 +25,7 @@
 
 (defun answers-break-p (session line)
   "True if LINE, typed in SESSION, answers a break, and so is not kept in the history."
-  (and (breaks-for-session session) (not (answers-any-break-p line))))
+  (and (breaks-for-session session) (not (valid-at-any-break-p line))))
 
 (defun read-typed-line (session before)
   "Return the next line typed in SESSION, or NIL at the end. Put the line into the history. If
@@ -70,7 +70,7 @@ Show PROMPT, except in a batch. First await earlier commands if SESSION waits fo
 ;;; If the reader fails inside a form, the lines below are the rest of it, not commands. Only
 ;;; parentheses, quotes and comments show how far it extends.
 
-(defun skip-to (char stream)
+(defun skip-past-character (char stream)
   "Read STREAM past the next CHAR that does not follow a backslash."
   (loop for next = (read-char stream)
         until (char= char next)
@@ -90,14 +90,14 @@ Show PROMPT, except in a batch. First await earlier commands if SESSION waits fo
   (let ((char (read-char stream)))
     (case char
       (#\\ (read-char stream))
-      ((#\" #\|) (skip-to char stream))
+      ((#\" #\|) (skip-past-character char stream))
       (#\; (loop until (char= #\Newline (read-char stream))))
       (#\# (when (char= #\| (peek-char nil stream))
              (read-char stream)
              (skip-to-comment-end stream))))
     char))
 
-(defun read-outline (session text)
+(defun read-line-or-outline (session text)
   "Return the next line of SESSION, which continues TEXT; NIL at the end. For a line that is too
 long, return an outline and the condition LINE-TOO-LONG."
   (handler-case (read-input session +continuation-prompt+ text)
@@ -111,25 +111,25 @@ long, return an outline and the condition LINE-TOO-LONG."
              (#\( (incf depth))
              (#\) (setf depth (max 0 (1- depth)))))))
 
-(defun skip-rest (session text start)
+(defun skip-rest-of-forms (session text start)
   "TEXT was read so far. Read lines in SESSION until all forms in TEXT from START on are complete."
   (flet ((next-outline (text)
-           (or (values (read-outline session text))
+           (or (values (read-line-or-outline session text))
                (error 'end-of-file :stream (session-input session)))))
-    (handler-case (skip-forms (make-growing-text text start #'next-outline))
+    (handler-case (skip-forms (make-growing-text-stream text start #'next-outline))
       (end-of-file ()))))
 
 (defun skip-unreadable-rest (condition session text start)
-  "Call SKIP-REST if CONDITION says that the form in TEXT at START cannot be read."
+  "Call SKIP-REST-OF-FORMS if CONDITION says that the form in TEXT at START cannot be read."
   (typecase condition
     (line-too-long
-     (skip-rest session (format nil "~A~%~A" text (line-outline condition)) start))
+     (skip-rest-of-forms session (format nil "~A~%~A" text (line-outline condition)) start))
     ((or bad-line storage-condition end-of-file) nil)
     (error (note-trouble-line (session-account session)
                               (count-of-lines-read (session-input session)))
-           (skip-rest session text start))))
+           (skip-rest-of-forms session text start))))
 
-(defmacro skipping-rest ((session text start) &body body)
+(defmacro skipping-unreadable-rest ((session text start) &body body)
   "Run BODY, which reads the form in TEXT at START. Skip the rest of a form that cannot be read."
   `(handler-bind ((error (lambda (condition)
                            (skip-unreadable-rest condition ,session ,text ,start))))
@@ -145,8 +145,8 @@ long, return an outline and the condition LINE-TOO-LONG."
   (flet ((read-more (text)
            (or (read-input session +continuation-prompt+ text)
                (reject-line "The form is not complete: ~A" (one-line text)))))
-    (let* ((stream (make-growing-text text start #'read-more))
-           (form (skipping-rest (session (grown-text stream) start)
+    (let* ((stream (make-growing-text-stream text start #'read-more))
+           (form (skipping-unreadable-rest (session (grown-text stream) start)
                    (read-preserving-whitespace stream))))
       (values form
               (min (grown-position stream) (length (grown-text stream)))
@@ -154,7 +154,7 @@ long, return an outline and the condition LINE-TOO-LONG."
 
 (defun only-skipped-form-p (text start)
   "True if TEXT contains, from START on, only a form that Lisp skips, as after #-sbcl."
-  (let ((start (position-if-not #'blank-p text :start start)))
+  (let ((start (position-if-not #'blank-character-p text :start start)))
     (and start
          (< (1+ start) (length text))
          (char= #\# (char text start))
@@ -166,7 +166,7 @@ long, return an outline and the condition LINE-TOO-LONG."
   "Return the form in TEXT at START, the position of its end, and TEXT with the lines read
 meanwhile. Read lines in SESSION while the form is incomplete. If the Lisp reader skips the text,
 return the form (VALUES). Skip an unreadable form to its end."
-  (handler-case (skipping-rest (session text start)
+  (handler-case (skipping-unreadable-rest (session text start)
                   (read-from-string text t nil :start start))
     (end-of-file ()
       (if (only-skipped-form-p text start)
@@ -206,7 +206,7 @@ is the condition LINE-TOO-LONG; otherwise NIL. Signals BAD-LINE if the comment d
         (when end (return (values (subseq line end) trouble)))
         (setf depth deeper
               position 0
-              (values line trouble) (read-outline session text))
+              (values line trouble) (read-line-or-outline session text))
         (unless line
           (reject-line "The comment that begins with #| does not end; close it with |#."))))))
 
@@ -238,10 +238,10 @@ condition LINE-TOO-LONG. TROUBLE is that condition for TEXT itself, or NIL."
   "Signal TROUBLE, unless TROUBLE is NIL or TEXT is a comment. TEXT is the outline of a line of
 SESSION; first skip a form that begins in TEXT."
   (when (and trouble (not (comment-p text)))
-    (when (lisp-p text) (skip-rest session text 0))
+    (when (lisp-p text) (skip-rest-of-forms session text 0))
     (error trouble)))
 
-(defun forms-after-block-comment (session text start)
+(defun form-text-after-block-comment (session text start)
   "Return the text after the comment that begins at START in TEXT, a text of forms. Read lines in
 SESSION until the comment ends. Signals LINE-TOO-LONG if a line is too long even without comments."
   (multiple-value-bind (rest trouble) (text-after-block-comment session text start nil)
@@ -254,9 +254,9 @@ SESSION until the comment ends. Signals LINE-TOO-LONG if a line is too long even
   "Skip blanks and comments from POSITION in TEXT, a text of forms. Read lines in SESSION until the
 comments end. Return TEXT, or its part after the comments, and the position of its next form."
   (loop
-    (let ((start (or (position-if-not #'blank-p text :start position) (length text))))
+    (let ((start (or (position-if-not #'blank-character-p text :start position) (length text))))
       (unless (block-comment-at-p text start)
         (return (values text start)))
       ;; Not at 0: there is something before it.
-      (setf text (format nil " ~A" (forms-after-block-comment session text start))
+      (setf text (format nil " ~A" (form-text-after-block-comment session text start))
             position 1))))

@@ -160,7 +160,7 @@ be NIL. TYPED-P is true for a line that is not Lisp."
 (defun note-plan-of-line (account plan)
   (when account (push (cons (asker-note plan) (last-line-number account)) (account-plans account))))
 
-(defun line-of-message (account message)
+(defun line-number-of-message (account message)
   "Return the number of the line that caused MESSAGE, or of the running line; NIL without ACCOUNT."
   (when account
     (let* ((asker (message-asker message))
@@ -175,4 +175,4 @@ be NIL. TYPED-P is true for a line that is not Lisp."
   (when (reports-objects-p account)
     (dolist (message messages t)
       (report-message account (message-kind message) (message-text message)
-                      (line-of-message account message)))))
+                      (line-number-of-message account message)))))

@@ -87,9 +87,9 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
 (defvar *prompt-robot* nil
   "The name of the robot that the prompt commands: the robot last given to SIMULATOR or chosen.")
 
-(add-listener *simulator-hooks* note-robot)
+(add-listener *simulator-hooks* record-prompt-robot)
 
-(defun note-robot (robot options)
+(defun record-prompt-robot (robot options)
   (declare (ignore options))
   (setf *prompt-robot* (robot-name robot))
   (import-robot-names (mapcar #'robot-name (simulation-robots (robot-simulation robot)))))
@@ -175,7 +175,7 @@ ARS-USER. COLOR is :ALWAYS, :NEVER, or :AUTO (on a terminal, unless the environm
                    name (simulation-over *simulation*)
                    (and (find-map name nil) name)))))
 
-(defun robot-commanded ()
+(defun robot-of-prompt ()
   "Return the robot of the current simulation with the name *PROMPT-ROBOT*, or NIL. A simulation
 that Lisp at the prompt runs may have no such robot."
   (find *prompt-robot* (simulation-robots *simulation*) :key #'robot-name))
@@ -184,7 +184,7 @@ that Lisp at the prompt runs may have no such robot."
   "Return the robot that the prompt commands. Signals BAD-LINE without a robot or after the run."
   (check-run-not-over)
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
-    (or (and robots (robot-commanded))
+    (or (and robots (robot-of-prompt))
         (first robots)
         (reject-line "There is no robot here. WORLD lists worlds; WORLD name starts a world."))))
 

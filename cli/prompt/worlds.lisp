@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(package-of-caller))
+(export '(package-for-new-prompt))
 
 ;;; The variable of a robot is a symbol of the package in which its world was written. ARS-USER
 ;;; imports the robots that the prompt may command, so that (robot-turn robbie 1 nil) works. A
@@ -10,7 +10,7 @@
 
 (defun user-package () (find-package :ars-user))
 
-(defun defined-p (symbol)
+(defun symbol-defined-p (symbol)
   (or (boundp symbol) (fboundp symbol)))
 
 (defun robot-of-other-world-p (symbol)
@@ -24,7 +24,7 @@
     (unless (eq known name)
       ;; A symbol that has only been read, or is a robot's of another world, is replaced.
       (when (and (member status '(:internal :external))
-                 (or (not (defined-p known)) (robot-of-other-world-p known)))
+                 (or (not (symbol-defined-p known)) (robot-of-other-world-p known)))
         (unintern known (user-package))
         (setf status nil))
       (unless status (import (list name) (user-package))))))
@@ -51,7 +51,7 @@ robot's name by a new symbol of ARS-USER."
 ;;; The shipped worlds, in the directory worlds/, are always there and have the names of their maps.
 ;;; Others come from files: Lisp files that define a map and at least one robot in it.
 
-(defun package-of-caller ()
+(defun package-for-new-prompt ()
   "Return a new prompt's package: the current package if it uses the simulator's, else ARS-USER."
   (if (eq 'simulator (find-symbol (string 'simulator) *package*))
       *package*

@@ -13,7 +13,7 @@
         number
         (reject-usage "~A is not a whole number from 1 to 1e9, in digits." text))))
 
-(defun parse-width (text)
+(defun parse-interval-width (text)
   (let ((number (number-from-text text)))
     (if (and number (< 0 number 1))
         number
@@ -22,7 +22,7 @@
 (defconstant +largest-count-of-shards+ 100000
   "The largest number of shards. The numbers of all shards must fit on a command line.")
 
-(defun parse-shards (text)
+(defun parse-shard-count (text)
   (let ((count (number-from-text text)))
     (if (and (integerp count) (<= 1 count +largest-count-of-shards+))
         count
@@ -45,10 +45,10 @@
 
 (defparameter *experiment-options*
   '(("--trials" :trials parse-count) ("--workers" :workers parse-count) ("--out" :out parse-path)
-    ("--until" :until parse-width) ("--time-limit" :time-limit parse-seconds)
+    ("--until" :until parse-interval-width) ("--time-limit" :time-limit parse-seconds)
     ("--plot" :plot nil) ("--quiet" :quiet nil)
     ("--shard" :shard parse-shard) ("--parallel" :parallel identity :optional)
-    ("--slurm" :slurm identity :optional) ("--shards" :shards parse-shards)
+    ("--slurm" :slurm identity :optional) ("--shards" :shards parse-shard-count)
     ("--missing" :missing nil) ("--save-executable" :save-executable parse-path))
   "The options of the command `experiment`, in the format of *OPTIONS*.")
 
@@ -94,12 +94,12 @@
            (let ((seconds (option-value :time-limit options)))
              (and seconds (list :time-limit seconds))))))
 
-(defun run-in-this-process (experiment options)
+(defun run-experiment-in-this-process (experiment options)
   (let ((shard (option-value :shard options)) (trials (trial-count experiment options)))
     (cond ((null shard)
            (report-results (run-experiment-with-options experiment options)
                            (option-value :plot options)))
-          ((trials-in-shard-p shard trials) (run-experiment-with-options experiment options))
+          ((shard-has-trials-p shard trials) (run-experiment-with-options experiment options))
           (t (print-notice "shard ~D of ~D has no trials: there are only ~D of each condition."
                            (car shard) (cdr shard) trials)))
     0))
@@ -121,7 +121,7 @@ UNDER-WAY is a text about a trial that took long, or NIL."
   (let ((under-way nil))
     (flet ((look (condition)
              (declare (ignore condition))
-             (setf under-way (trial-under-way))))
+             (setf under-way (current-slow-trial-text))))
       (call-until-interrupted (lambda ()
                                 (handler-bind ((user-interrupt #'look))
                                   (funcall function)))
@@ -147,7 +147,7 @@ UNDER-WAY is a text about a trial that took long, or NIL."
          (run-by-script experiment words options "run.sh" "spread-parallel.sh" #'parallel-settings))
         ((option-value :slurm options)
          (run-by-script experiment words options "job.sh" "spread-slurm.sh" #'slurm-settings))
-        (t (run-in-this-process experiment options))))
+        (t (run-experiment-in-this-process experiment options))))
 
 (defun experiment-from-words (words)
   "Return the experiment named by WORDS: its name, or a file and perhaps a name in the file."

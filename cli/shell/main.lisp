@@ -36,12 +36,12 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
 
 (defparameter *default-world* "WATSON" "The default world of a prompt.")
 
-(defun robot-from-options (options)
+(defun robot-name-from-options (options)
   (let* ((robot (option-value :robot options))
          (world (option-value :world options (and (null robot) *default-world*)))
          (robots (and world (robot-names-in-world world))))
     (cond ((null robot) (first robots))
-          ((null world) (find-robot-named robot))
+          ((null world) (resolve-robot-name robot))
           ((find robot robots :test #'same-name-p))
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
@@ -51,14 +51,14 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
     (handler-case (load-lisp (find-lisp-file name))
       (ars-magna-error (condition) (reject-usage "~A" (condition-text condition))))))
 
-(defun find-robot-from-options (session options)
+(defun find-robot-name-from-options (session options)
   "Return the name of the robot that OPTIONS ask for. If that robot is not defined, load the files
 of --load now, because they may define it. Signals USAGE-ERROR if the robot is still not defined."
-  (handler-case (robot-from-options options)
+  (handler-case (robot-name-from-options options)
     (bad-line (condition)
       (let ((files (shiftf (reader-files (session-reader session)) '())))
         (cond (files (load-files-before-prompt files)
-                     (find-robot-from-options session options))
+                     (find-robot-name-from-options session options))
               (t (reject-usage "~A --list lists the worlds and their robots."
                                (bad-line-text condition))))))))
 
@@ -152,7 +152,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
       (bad-line (condition) (reject-usage "~A" (bad-line-text condition))))))
 
 (defun run-session-with-options (session options)
-  (let ((robot-name (find-robot-from-options session options)))
+  (let ((robot-name (find-robot-name-from-options session options)))
     (when (option-value :json options) (write-lisp-output-as-objects session))
     (report-object (session-account session) "begin"
                    :program (format nil "ARS MAGNA ~A" *version*)
@@ -199,7 +199,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
     (prog1 (run-with-options options)
       (when (and (script-path script)
                  (null (option-value :world options))
-                 (only-defines-p (script-path script)))
+                 (file-only-defines-p (script-path script)))
         (say-on-error-output
          (format nil "~A only defines things. The file was run as a script of lines; to use its ~
                       robot: ars-magna --world ~:*~A." script))))))
@@ -236,7 +236,7 @@ print a message and return the status for that case."
   (catch 'leave
     (handler-case
         (call-until-interrupted
-         (lambda () (let ((*leave-without-output-p* t)) (call-open-to-interrupts function)))
+         (lambda () (let ((*leave-without-output-p* t)) (call-with-held-interrupts function)))
          (lambda ()
            (say-on-error-output "stopped.")
            130))

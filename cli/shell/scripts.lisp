@@ -45,8 +45,9 @@
 and the number of calls begun so far. While a file is loaded, return only a text that names the
 form; NIL if there is nothing to name."
   (let ((simulation (session-simulation session)))
-    (cond ((user-calls-origin calls) (values (running-code-owner calls) (user-calls-count calls)))
-          ((user-calls-place calls) (running-code-owner calls))
+    (cond ((user-calls-origin calls)
+           (values (running-code-owner-text calls) (user-calls-count calls)))
+          ((user-calls-place calls) (running-code-owner-text calls))
           ((and simulation (live-p simulation)) (users-code-in-progress simulation)))))
 
 (defun watch-for-blocking-code (session calls ended)

@@ -17,7 +17,7 @@
 
 (defun save-program (name)
   "Save this program, as it is now, as the executable file NAME, and end this process."
-  (settle-fingerprints)
+  (freeze-file-digests)
   (setf *saved-by-user-p* t)
   (let ((path (native-path name)))
     (handler-case (progn (check-writable path)
@@ -46,15 +46,15 @@ experiment. Signals BAD-LINE if the program cannot be saved."
 ;;; there are no more shards than a Slurm array may have tasks. Their number depends only on the
 ;;; experiment, so that a second start finds the same ones.
 
-(defparameter *shards-of-scripts* '(("run.sh" 500 16) ("job.sh" 5000 1))
+(defparameter *shard-defaults-of-scripts* '(("run.sh" 500 16) ("job.sh" 5000 1))
   "Lists (script trials least): the number of trials in a shard, and the least number of shards.")
 
 (defconstant +default-largest-shard-count+ 1000 "The largest number of shards by default.")
 
-(defun default-shards (experiment trials script)
+(defun default-shard-count (experiment trials script)
   "Return SCRIPT's default number of shards for TRIALS trials of each condition of EXPERIMENT."
   (destructuring-bind (size least)
-      (rest (assoc script *shards-of-scripts* :test #'string=))
+      (rest (assoc script *shard-defaults-of-scripts* :test #'string=))
     (min trials
          (clamp (ceiling (* trials (length (experiment-conditions experiment))) size)
                 least +default-largest-shard-count+))))
@@ -66,7 +66,7 @@ experiment. Signals BAD-LINE if the program cannot be saved."
   (let ((trials (trial-count experiment options)))
     `(("experiment" ,(string-downcase (experiment-name experiment)) "what is run")
       ("trials" ,trials "of each condition")
-      ("shards" ,(or (option-value :shards options) (default-shards experiment trials script))
+      ("shards" ,(or (option-value :shards options) (default-shard-count experiment trials script))
                 "number of parts into which all trials are divided")
       ("limit" ,(format nil "~@[--time-limit ~A~]" (option-value :time-limit options))
                "--time-limit SECONDS: how long a trial may take")

@@ -236,12 +236,12 @@ shown.")
 (defgeneric mirrors-of (console)
   (:documentation "Return the other consoles that show what this thread writes to CONSOLE."))
 
-(defvar *in-mirrors-p* nil "True while output to a console is written to its mirrors.")
+(defvar *writing-to-mirrors-p* nil "True while output to a console is written to its mirrors.")
 
 (defun call-with-mirrors (function console)
   "Call FUNCTION with each of the consoles that show what this thread writes to CONSOLE."
-  (unless *in-mirrors-p*
-    (let ((*in-mirrors-p* t)) (mapc function (mirrors-of console)))))
+  (unless *writing-to-mirrors-p*
+    (let ((*writing-to-mirrors-p* t)) (mapc function (mirrors-of console)))))
 
 (defmethod stream-write-string ((console console) string &optional (start 0) end)
   (with-console (stream console)
@@ -249,7 +249,7 @@ shown.")
   (call-with-mirrors (lambda (mirror) (write-string string mirror :start start :end end)) console)
   string)
 
-(defun write-fresh (text console)
+(defun write-on-fresh-line (text console)
   "Write TEXT to CONSOLE at the beginning of a line, without output of other threads in between."
   (with-console (stream console) (write-on-new-line text console stream)))
 
@@ -267,13 +267,13 @@ shown.")
 between words to fit the window.")
   (:method (text (console console) &optional (label ""))
     (if (console-window console)
-        (broken-text text (1- (funcall (console-window console))) (text-columns label))
+        (text-broken-at-blanks text (1- (funcall (console-window console))) (text-columns label))
         text)))
 
 (defun write-fitted (console control &rest arguments)
   "Format CONTROL with ARGUMENTS, break the lines to fit the window, and write the text at the
 beginning of a line of CONSOLE."
-  (write-fresh (fit-to-window (apply #'format nil control arguments) console) console))
+  (write-on-fresh-line (fit-to-window (apply #'format nil control arguments) console) console))
 
 (defmethod stream-write-char ((console console) char)
   (stream-write-string console (string char))

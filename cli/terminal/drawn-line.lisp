@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(rows-to-show))
+(export '(visible-rows-of-line))
 
 ;;; The line is below all output: it is erased before output is written, and drawn again after that.
 ;;; It breaks into rows at the width of the window; if it has more rows than the window, those
@@ -64,7 +64,7 @@ last" :writable))
   (let ((start (max 0 (min (- place-row (floor height 2)) (- (length rows) height)))))
     (values (subseq rows start (min (length rows) (+ start height))) start)))
 
-(defun rows-to-show (label text point columns height)
+(defun visible-rows-of-line (label text point columns height)
   "Return a line's rows to show in a window of COLUMNS and HEIGHT, and the cursor's row and column."
   (multiple-value-bind (rows row column) (break-into-rows label text point columns)
     (multiple-value-bind (rows start) (visible-rows rows row height)
@@ -82,7 +82,7 @@ last" :writable))
 (defun draw-line (line stream columns height)
   "Draw LINE at the cursor, which is in the first column, in a window of COLUMNS and HEIGHT."
   (with-accessors ((label drawn-line-label) (text drawn-line-text) (point drawn-line-point)) line
-    (multiple-value-bind (rows row column) (rows-to-show label text point columns height)
+    (multiple-value-bind (rows row column) (visible-rows-of-line label text point columns height)
       (write-rows rows stream)
       (format stream "~A~C~A" (cursor-up-code (- (length rows) row 1)) #\Return
               (cursor-right-code column))
@@ -94,5 +94,5 @@ last" :writable))
   "Erase LINE from the screen. Afterwards the cursor is where LINE began."
   (destructuring-bind (label text point) (shiftf (drawn-line-shown line) '())
     (format stream "~A~C~A"
-            (cursor-up-code (nth-value 1 (rows-to-show label text point columns height)))
+            (cursor-up-code (nth-value 1 (visible-rows-of-line label text point columns height)))
             #\Return (clear-below-code))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(painted-spans unpainted-text broken-text))
+(export '(painted-spans unpainted-text text-broken-at-blanks))
 
 ;;; Only this file has escape codes, those of all present terminals. Colours are the sixteen that
 ;;; users choose themselves, to suit the background; white and black are left for plain text.
@@ -18,7 +18,7 @@
 
 (defconstant +escape+ #\Escape "The beginning of the codes of terminals and of their keys.")
 
-(defun escape (control &rest arguments)
+(defun format-escape-code (control &rest arguments)
   (format nil "~C[~?" +escape+ control arguments))
 
 (defun ink-code (ink)
@@ -31,7 +31,8 @@
   "Return TEXT with codes that show each line in the colour named INK; TEXT if INK is unknown."
   (let ((code (and ink (string/= text "") (ink-code ink))))
     (flet ((paint-line (line)
-             (if (string= line "") line (uiop:strcat (escape "~Am" code) line (escape "0m")))))
+             (if (string= line "") line
+                 (uiop:strcat (format-escape-code "~Am" code) line (format-escape-code "0m")))))
       (if (null code) text (format nil "~{~A~^~%~}" (mapcar #'paint-line (lines-in text)))))))
 
 (defun ink-of-code (code)
@@ -74,47 +75,48 @@ only a terminal has colours, and only if the environment variable NO_COLOR is no
 ;;; Moving the cursor, and erasing.
 
 (defun cursor-up-code (count)
-  (if (plusp count) (escape "~DA" count) ""))
+  (if (plusp count) (format-escape-code "~DA" count) ""))
 
 (defun cursor-right-code (count)
-  (if (plusp count) (escape "~DC" count) ""))
+  (if (plusp count) (format-escape-code "~DC" count) ""))
 
 (defun clear-row-code ()
   "Return the code that erases the rest of the row after the cursor."
-  (escape "K"))
+  (format-escape-code "K"))
 
 (defun clear-below-code ()
   "Return the code that erases the rest of the screen after the cursor."
-  (escape "J"))
+  (format-escape-code "J"))
 
 (defun clear-window-code ()
   "Return the code that erases everything and moves the cursor to the upper left."
-  (format nil "~A~A" (escape "H") (escape "2J")))
+  (format nil "~A~A" (format-escape-code "H") (format-escape-code "2J")))
 
 ;;; What is pasted.
 
 (defun paste-marking-code (on)
   "Return the code that makes a terminal mark pasted text, or no longer mark it if ON is NIL."
-  (escape "?2004~:[l~;h~]" on))
+  (format-escape-code "?2004~:[l~;h~]" on))
 
 (defun paste-end-code ()
   "Return the code that a terminal sends after pasted text."
-  (escape "201~~"))
+  (format-escape-code "201~~"))
 
 ;;; A separate screen, for output that is updated in place.
 
 (defun begin-screen-code ()
   "Return the code that saves the terminal's screen and shows an empty one without cursor."
-  (format nil "~A~A~A" (escape "?1049h") (escape "?25l") (escape "2J")))
+  (format nil "~A~A~A" (format-escape-code "?1049h") (format-escape-code "?25l")
+          (format-escape-code "2J")))
 
 (defun end-screen-code ()
   "Return the code that restores the cursor and the screen that BEGIN-SCREEN-CODE saved."
-  (format nil "~A~A" (escape "?25h") (escape "?1049l")))
+  (format nil "~A~A" (format-escape-code "?25h") (format-escape-code "?1049l")))
 
 (defun overwrite-screen-code (text)
   "Return the code that overwrites the whole screen with the lines of TEXT."
   (with-output-to-string (out)
-    (write-string (escape "H") out)
+    (write-string (format-escape-code "H") out)
     (loop for start = 0 then (1+ end)
           for end = (position #\Newline text :start start)
           do (format out "~A~A" (subseq text start end) (clear-row-code))
@@ -182,7 +184,7 @@ of these lines. Further lines are indented like LINE."
                                     columns columns))
         (list line))))
 
-(defun broken-text (text columns &optional (used 0))
+(defun text-broken-at-blanks (text columns &optional (used 0))
   "Return TEXT with lines broken at blanks to at most COLUMNS; the first line has USED fewer."
   (loop with lines = (uiop:split-string text :separator '(#\Newline))
         for line in lines

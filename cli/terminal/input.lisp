@@ -55,7 +55,7 @@ available when the last line was read."))
   "True if CHAR, after LAST, belongs to a line's outline: Lisp punctuation, or the start of a word."
   (flet ((mark-p (char) (find char "()\"\\|;#")))
     (or (mark-p char) (mark-p last) (char= char #\Newline)
-        (and (blank-p last) (not (blank-p char))))))
+        (and (blank-character-p last) (not (blank-character-p char))))))
 
 (defun read-octet-line (octets)
   "Read a line from the stream OCTETS. Return the line with its newline, and true if it was too

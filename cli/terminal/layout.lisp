@@ -131,28 +131,28 @@ before TEXT on the first line, or on a separate line if HEAD is too long."
         for start = head then ""
         do (format t "~VA~A~%" indent start line)))
 
-(defun first-sentence (text)
+(defun first-clause (text)
   "Return the first clause of TEXT: up to a period, colon or semicolon before a blank or the end."
   (let* ((text (one-line text))
          (end (loop for i from 0 below (length text)
                     when (and (find (char text i) ".:;")
-                              (or (= (1+ i) (length text)) (blank-p (char text (1+ i)))))
+                              (or (= (1+ i) (length text)) (blank-character-p (char text (1+ i)))))
                       return i)))
     (subseq text 0 end)))
 
-(defun whole-sentence (text)
+(defun first-full-sentence (text)
   "Return the first sentence of TEXT, on one line."
   (let* ((text (one-line text)) (end (search ". " text)))
     (if end (subseq text 0 (1+ end)) text)))
 
 ;;; A live world is read between two ticks.
 
-(defun call-while-still (function)
+(defun call-with-time-stopped (function)
   "Call FUNCTION, which writes to the standard output, while the world stands still."
   (let ((simulation (current-simulation)))
     (write-string (asking (simulation)
                     (with-output-to-string (*standard-output*) (funcall function))))))
 
-(defmacro while-still (&body body)
+(defmacro with-time-stopped (&body body)
   "Run BODY, which writes to standard output, while the world stands still."
-  `(call-while-still (lambda () ,@body)))
+  `(call-with-time-stopped (lambda () ,@body)))

@@ -47,7 +47,7 @@ happens.")
       (signal-user-interrupt))))
 
 ;; After Control-C, cleanup must finish before this process ends; Control-C often comes twice.
-(defun take-interrupt ()
+(defun handle-or-count-interrupt ()
   "Handle Control-C. If this process is ending, count the interrupt, and exit after too many."
   (cond ((null *interrupts-while-ending*) (handle-interrupt))
         ((< (incf *interrupts-while-ending*) +interrupts-before-exit+))
@@ -107,7 +107,7 @@ third press does. The second press does, too, if the first had no effect and was
   (let ((thread (current-thread)))
     (call-on-interrupt (lambda ()
                          (note-interrupt)
-                         (interrupt-thread thread #'take-interrupt)))))
+                         (interrupt-thread thread #'handle-or-count-interrupt)))))
 
 ;;;; The terminal
 

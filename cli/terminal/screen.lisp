@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(defun write-at-once (text console)
+(defun write-immediately (text console)
   "Write TEXT to the stream of CONSOLE at once, even while CONSOLE holds back output."
   (with-console (stream console)
     (write-string text stream)
@@ -17,10 +17,10 @@
 
 (defun begin-screen (console)
   (setf (console-held-back-p console) t)
-  (write-at-once (begin-screen-code) console))
+  (write-immediately (begin-screen-code) console))
 
 (defun end-screen (console)
-  (write-at-once (end-screen-code) console)
+  (write-immediately (end-screen-code) console)
   (with-console (stream console)
     (setf (console-held-back-p console) nil)
     (dolist (string (reverse (shiftf (console-held-back console) '())))
@@ -29,11 +29,11 @@
 
 (defun call-with-screen (function console)
   "Call FUNCTION while CONSOLE, on a terminal that passes on keys, shows a separate screen. FUNCTION
-draws by WRITE-AT-ONCE and OVERWRITE-SCREEN-CODE. Other output is held back until the end."
+draws by WRITE-IMMEDIATELY and OVERWRITE-SCREEN-CODE. Other output is held back until the end."
   (call-holding-interrupts
    (lambda ()
      (begin-screen console)
-     (unwind-protect (call-open-to-interrupts function)
+     (unwind-protect (call-with-held-interrupts function)
        (end-screen console)))))
 
 ;;; A line that shows progress.

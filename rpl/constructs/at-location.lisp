@@ -6,37 +6,37 @@
 ;;; passes a valve. A task that has to drive first waits, owning the valve, until no task stays. So
 ;;; tasks whose place fits do not drive, and a waiting task is not overtaken by later ones.
 
-(defstruct (whereabouts (:constructor make-whereabouts ()) (:copier nil))
+(defstruct (stay-registry (:constructor make-stay-registry ()) (:copier nil))
   "The tasks of a plan runner that are busy at a place, as a list of STAYs in the fluent STAYS."
-  (valve (make-valve 'whereabouts) :type valve :read-only t)
+  (valve (make-valve 'stay-registry) :type valve :read-only t)
   (stays (create-fluent 'stays '()) :type fluent :read-only t))
 
-(defstruct (stay (:constructor make-stay (task)) (:copier nil))
+(defstruct (stay-record (:constructor make-stay-record (task)) (:copier nil))
   "A record that TASK does something at the place where the robot is."
   (task nil :type task :read-only t))
 
-(defun whereabouts ()
-  (or (runner-note *runner* 'whereabouts)
-      (setf (runner-note *runner* 'whereabouts) (make-whereabouts))))
+(defun stay-registry ()
+  (or (runner-note *runner* 'stay-registry)
+      (setf (runner-note *runner* 'stay-registry) (make-stay-registry))))
 
 (defun begin-stay (whereabouts)
   "Note that the calling task stays where the robot is now. Return the stay."
-  (let ((stay (make-stay (current-task))))
-    (set-value (whereabouts-stays whereabouts)
-               (cons stay (fluent-value (whereabouts-stays whereabouts))))
+  (let ((stay (make-stay-record (current-task))))
+    (set-value (stay-registry-stays whereabouts)
+               (cons stay (fluent-value (stay-registry-stays whereabouts))))
     stay))
 
 (defun end-stay (whereabouts stay)
   (when stay
-    (set-value (whereabouts-stays whereabouts)
-               (remove stay (fluent-value (whereabouts-stays whereabouts))))))
+    (set-value (stay-registry-stays whereabouts)
+               (remove stay (fluent-value (stay-registry-stays whereabouts))))))
 
-(defun no-other-stays (whereabouts)
+(defun no-other-stays-fluent (whereabouts)
   "Return a fluent that is true while no task stays, except the current one and those around it."
   (let ((task (current-task)))
     (fl-funcall (lambda (stays)
-                  (every (lambda (stay) (part-of-p task (stay-task stay))) stays))
-                (whereabouts-stays whereabouts))))
+                  (every (lambda (stay) (part-of-p task (stay-record-task stay))) stays))
+                (stay-registry-stays whereabouts))))
 
 (addition location-lost)
 (define-condition location-lost (plan-failure)
@@ -63,18 +63,18 @@ attempts to return."))
   "True if FORM, an AT-LOCATION, has the keyword KEY, even if its value is NIL."
   (and (get-properties (rest (second form)) (list key)) t))
 
-(defun at-location-text (place there go attempts body)
+(defun at-location-form (place there go attempts body)
   "Return plan text that runs BODY at PLACE. GO brings the robot there; THERE is true at PLACE."
   (with-gensyms (at most left here stay done again lost)
     `(let* ((,at ,place) (,most (check-attempts ,attempts)) (,left ,most)
-            (,here (whereabouts)) (,stay nil))
+            (,here (stay-registry)) (,stay nil))
        (block ,done
          (tagbody
             ,again
             (evap-protect
-             (seq (with-valve ((whereabouts-valve ,here))
+             (seq (with-valve ((stay-registry-valve ,here))
                     (if (not ,there)
-                        (seq (wait-for (no-other-stays ,here))
+                        (seq (wait-for (no-other-stays-fluent ,here))
                              ,go))
                     (setq ,stay (begin-stay ,here)))
                   (if (not ,there) (go ,lost))
@@ -102,5 +102,5 @@ modules instead of THERE and GO.)"
   (:code (progn
            (unless (and (option-given-p :there form) (option-given-p :go form))
              (reject-clause (text-title) form "(at-location (place :there test :go form) form...)"))
-           (plan-code (note-expansion (at-location-text place there go (or attempts 10) body) form)
+           (plan-code (note-expansion (at-location-form place there go (or attempts 10) body) form)
                       scope))))

@@ -24,7 +24,7 @@
   "Run BRANCHES in parallel in a plan. When all branches have succeeded, return the first value of
 the last form written. When one branch fails, PAR fails and evaporates the others (manual D.7)."
   (:manual)
-  (:parts (branches simple-vector (branches-code branches (single-scope scope))))
+  (:parts (branches simple-vector (branches-code branches (single-value-scope scope))))
   (:steps
    (begin
     (next inside)
@@ -130,7 +130,7 @@ has no dice, keep the order as written."
 Return the value of BODY. If BODY succeeds for no element, fail with a COMPOSITE-FAILURE."
   (:like try-in-order)
   (:arguments sequence)
-  (:parts (attempts simple-vector `(vector ,(each-body-code variable body scope)))
+  (:parts (attempts simple-vector `(vector ,(item-loop-body-code variable body scope)))
           (order function
                  `(let ((items ,(value-lambda sequence scope)))
                     (lambda (attempts environment dice)
@@ -148,7 +148,7 @@ Return the value of BODY. If BODY succeeds for no element, fail with a COMPOSITE
 (defun iteration-code (variable body scope)
   "Return code for BODY in the environment of a turn. Each turn has its own VARIABLE and tags."
   (let ((tags (tags-in body)))
-    (binding-body-code body (tagged-scope (variable-scope (single-scope scope)
+    (binding-body-code body (tagged-scope (variable-scope (single-value-scope scope)
                                                           (cons variable tags))
                                           tags 2))))
 
@@ -216,7 +216,7 @@ branches have failed. COUNT is an integer from 0 to the number of branches. (Not
 statecharts of 2026 have a PAR with minimum_success.)"
   (:arguments count)
   (:parts (needed function (value-lambda count scope))
-          (branches simple-vector (branches-code branches (single-scope scope))))
+          (branches simple-vector (branches-code branches (single-value-scope scope))))
   (:steps
    (begin
     (let ((count (fluent-value (funcall needed environment))))

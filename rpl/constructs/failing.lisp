@@ -11,13 +11,14 @@
 
 (defun check-fail (form)
   (when (and (cddr form) (keywordp (second form)) (misspelling-p (second form) :class))
-    (style-warn-of form "fail takes ~(~S~) as the class of the failure. Did you mean :class?"
-                   (second form))))
+    (style-warn-of-form form "fail takes ~(~S~) as the class of the failure. Did you mean :class?"
+                        (second form))))
 
 (defun check-failure-class (form scope)
   (let ((class (and (eq :class (second form)) (third form))))
     (when (name-without-quote-p class scope)
-      (style-warn-of-own form "~(~A~) is no variable. The class of a failure is a keyword: (fail ~
+      (style-warn-of-plan-text form
+                               "~(~A~) is no variable. The class of a failure is a keyword: (fail ~
                                :class :~:*~(~A~))." class))))
 
 (define-plan-form "FAIL" :may (&rest arguments) (form scope)
@@ -36,7 +37,7 @@
 (defun handler-code (clause scope)
   (destructuring-bind (type (&optional (variable (gensym "FAILURE"))) &rest body) clause
     (declare (ignore type))
-    (binding-body-code body (variable-scope (single-scope scope) (list variable)))))
+    (binding-body-code body (variable-scope (single-value-scope scope) (list variable)))))
 
 (defun failure-specifier-p (type)
   "True if a clause of HANDLE-FAILURE may have the type TYPE: a symbol, or (or TYPE...)."
@@ -76,15 +77,16 @@
                       (plan-function-p operator)
                       (eq (find-package "COMMON-LISP") (symbol-package operator))))))))
 
-(defun warn-of-code-as-class (code body form)
+(defun warn-of-error-code-as-class (code body form)
   "Warn if FORM handles the failure class CODE, which in BODY is only an error code of commands."
-  (let* ((command (find-call (lambda (form) (fluent-of-code (first form) code)) body))
-         (fluent (and command (fluent-of-code (first command) code))))
+  (let* ((command (find-call (lambda (form) (fluent-of-error-code (first form) code)) body))
+         (fluent (and command (fluent-of-error-code (first command) code))))
     (when (and command (not (find-call (lambda (form) (may-fail-with-class-p form code)) body)))
-      (style-warn-of-own form "~(~A~) does not fail with class ~S, but sets ~(~A~) to that value. ~
+      (style-warn-of-plan-text form
+                               "~(~A~) does not fail with class ~S, but sets ~(~A~) to that value. ~
                                After the wait write (if (fluent-value ~(~A~)) ...). To fail, write ~
                                (fail :class (fluent-value ~(~A~))) there."
-                         (first command) code fluent fluent fluent))))
+                               (first command) code fluent fluent fluent))))
 
 (define-construct with-failure-handling (clauses &body body)
   "Run BODY in a plan, and handle a failure by the first of CLAUSES with a matching type. A clause
@@ -105,7 +107,7 @@ Return all values of BODY."
                                                    (abridged clauses))))
      (dolist (clause clauses)
        (check-clause clause form scope)
-       (dolist (code (ensure-list (first clause))) (warn-of-code-as-class code body form)))
+       (dolist (code (ensure-list (first clause))) (warn-of-error-code-as-class code body form)))
      (block-code nil form scope
                  (lambda (scope)
                    (with-gensyms (start)
@@ -132,7 +134,7 @@ Return all values of BODY."
               (values t
                       (make-frame (svref handlers index)
                                   (vector environment
-                                          (failure-subject signal (nth index types)))
+                                          (failure-for-clause signal (nth index types)))
                                   frame)
                       nil)))))))
 
@@ -149,9 +151,9 @@ Return all values of BODY."
 
 ;;; A counter is a variable; another one, that only macros know, holds what it started with.
 
-(defun start-value-variable (counter)
-  (or (get counter 'start-value-variable)
-      (setf (get counter 'start-value-variable)
+(defun initial-value-variable (counter)
+  (or (get counter 'initial-value-variable)
+      (setf (get counter 'initial-value-variable)
             (make-symbol (format nil "START-OF-~A" counter)))))
 
 (defun check-counters (counters)
@@ -165,8 +167,8 @@ RESET-COUNTER. (From CRAM, except that a counter is also a variable.)"
   (:in-lisp (progn
               (check-counters counters)
               `(let ,(loop for (name number) in counters
-                           collect `(,(start-value-variable name) ,number))
-                 (let ,(loop for (name) in counters collect `(,name ,(start-value-variable name)))
+                           collect `(,(initial-value-variable name) ,number))
+                 (let ,(loop for (name) in counters collect `(,name ,(initial-value-variable name)))
                    (declare (ignorable ,@(mapcar #'first counters)))
                    ,@body)))))
 
@@ -179,7 +181,7 @@ handler. (From CRAM.)"
 
 (defun check-counter (operator counter environment)
   (unless (and counter (symbolp counter)
-               (local-variable-p (start-value-variable counter) environment))
+               (local-variable-p (initial-value-variable counter) environment))
     (reject-clause operator counter "the name of a counter of the with-retry-counters around it")))
 
 (addition get-counter)
@@ -192,7 +194,7 @@ handler. (From CRAM.)"
 (defmacro reset-counter (counter &environment environment)
   "Set COUNTER of WITH-RETRY-COUNTERS to its initial value, and return that value. (From CRAM.)"
   (check-counter "reset-counter" counter environment)
-  `(setq ,counter ,(start-value-variable counter)))
+  `(setq ,counter ,(initial-value-variable counter)))
 
 ;;; While the cleanup runs, the frame remembers the signal that is to go on after it, a completion
 ;;; if none. A task that is cleaning up does not evaporate: see EVAPORATE.
@@ -213,23 +215,23 @@ handler. (From CRAM.)"
 if FIRST continues, or NIL alone if SIGNAL continues instead."
   (let ((failed (typep signal 'plan-failure)))
     (when (or (eq first :evaporate) (and failed (not (completion-p first))))
-      (when failed (note-suppressed first signal task))
+      (when failed (note-suppressed-failure first signal task))
       (values nil first))))
 
-(defun note-suppressed (first failure task)
+(defun note-suppressed-failure (first failure task)
   (if (typep first 'plan-failure)
       (push failure (failure-suppressed first))
-      (warn-notably "A cleanup failed in " (task-label task) ": " (failure-text failure))))
+      (queue-notable-warning "A cleanup failed in " (task-label task) ": " (failure-text failure))))
 
-(defun report-given-up (cleanup)
-  (warn-notably "The cleanup " (form-text cleanup) " in " (task-label (current-task))
+(defun report-cleanup-timeout (cleanup)
+  (queue-notable-warning "The cleanup " (form-text cleanup) " in " (task-label (current-task))
                " was given up at tick " (plan-time) ": it took longer than its limit."))
 
 (defun cleanup-form (cleanup limit)
   "Return the form that runs CLEANUP for at most LIMIT ticks. LIMIT is a form, or NIL for no limit."
   (if limit
-      (note-own-text `(pursue ,cleanup
-                              (seq (wait-time ,limit) (report-given-up ',cleanup))))
+      (note-plan-text `(pursue ,cleanup
+                               (seq (wait-time ,limit) (report-cleanup-timeout ',cleanup))))
       cleanup))
 
 (define-construct evap-protect (protected cleanup &key limit)
@@ -237,7 +239,7 @@ if FIRST continues, or NIL alone if SIGNAL continues instead."
 or a RETURN that leaves PROTECTED. CLEANUP may wait, but is abandoned with a warning after LIMIT
 ticks. A failure of CLEANUP counts only if PROTECTED succeeded. Return all values of PROTECTED."
   (:parts (protected node (plan-code protected scope))
-          (cleanup node (plan-code (cleanup-form cleanup limit) (single-scope scope))))
+          (cleanup node (plan-code (cleanup-form cleanup limit) (single-value-scope scope))))
   (:steps
    (begin
     (next inside)

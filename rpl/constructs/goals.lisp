@@ -122,7 +122,7 @@ NIL" :writable)
 
 ;;; Defining. A pattern that matches the same as one defined before redefines that one.
 
-(defun goal-name (operator pattern shape count)
+(defun goal-entry-name (operator pattern shape count)
   (let ((old (find-if (lambda (goal)
                         (and (match-shape shape count (goal-shape goal))
                              (match-shape (goal-shape goal) (length (goal-variables goal)) shape)))
@@ -133,10 +133,10 @@ NIL" :writable)
 
 (defun install-goal (operator pattern procedure text)
   (multiple-value-bind (shape variables) (parse-pattern pattern)
-    (register *goals* (goal-name operator pattern shape (length variables))
+    (register *goals* (goal-entry-name operator pattern shape (length variables))
               (make-goal operator pattern shape variables procedure text))))
 
-(defun parsed-operator (definition operator)
+(defun checked-goal-operator (definition operator)
   (or (and (symbolp operator) (find operator '(achieve perceive belief) :test #'same-name-p))
       (reject-clause definition operator "achieve, perceive or belief")))
 
@@ -146,7 +146,7 @@ NIL" :writable)
   (multiple-value-bind (body text) (split-documentation body)
     (let ((variables (nth-value 1 (parse-pattern pattern))))
       (check-variables variables environment pattern)
-      `(install-goal ',(parsed-operator definition operator) ',pattern
+      `(install-goal ',(checked-goal-operator definition operator) ',pattern
                      ,(macroexpand-1 `(interp-lambda ,variables (block succeed-with ,@body))
                                      environment)
                      ,text))))
@@ -170,5 +170,5 @@ variables as in DEF-INTERP-MACRO.)"
   "End the body of a DEF-GOAL successfully, with VALUES. (From CRAM, where the name is SUCCEED. In
 ARS MAGNA, SUCCEED is a name for commands.)"
   (:code (if (assoc 'succeed-with (scope-blocks scope))
-             (plan-code (note-own-text `(return-from succeed-with (values ,@values))) scope)
+             (plan-code (note-plan-text `(return-from succeed-with (values ,@values))) scope)
              (reject-clause (text-title) form "succeed-with only in the body of a def-goal"))))

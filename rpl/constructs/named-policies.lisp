@@ -62,10 +62,11 @@ CRAM)."))
   "Return a new use of POLICY, a policy or its name, with ARGUMENTS, or signal WRONG-ARGUMENT."
   (let* ((policy (find-policy policy))
          (parameters (policy-lambda-list policy))
-         (trouble (arguments-misfit-text (shape-of parameters) arguments :wrong-p (constantly t))))
+         (trouble (arguments-misfit-text (lambda-list-shape parameters) arguments :wrong-p
+                                         (constantly t))))
     (when trouble
       (reject-argument (or (policy-name policy) 'make-policy) "argument list" arguments
-                       (format nil "~A, not ~A" (shape-text parameters) trouble)))
+                       (format nil "~A, not ~A" (lambda-list-text parameters) trouble)))
     (make-policy-use policy arguments)))
 
 (defun stored-policy-value (use name) (getf (use-memory use) name))
@@ -76,7 +77,7 @@ CRAM)."))
 (define-global +use-variable+ (make-symbol "USE")
   "The variable in which each clause of a policy finds the current use of the policy.")
 
-(defun check-in-clause (form environment)
+(defun check-inside-policy-clause (form environment)
   (unless (local-variable-p +use-variable+ environment)
     (reject-clause (text-title) form
                    (format nil "~(~A~) only in a clause of define-policy or make-policy, and not ~
@@ -87,14 +88,14 @@ CRAM)."))
 (defmacro policy-get (&whole form name &environment environment)
   "Return the value last stored under NAME by POLICY-SETF, or NIL. For use in a clause of a policy.
 NAME is evaluated. The value is kept while the policy is in force (from CRAM)."
-  (check-in-clause form environment)
+  (check-inside-policy-clause form environment)
   `(stored-policy-value ,+use-variable+ ,name))
 
 (addition policy-setf)
 (defmacro policy-setf (&whole form name value &environment environment)
   "Store VALUE under NAME for the other clauses of a policy, and return VALUE. For use in such a
 clause. VALUE and NAME are evaluated. The value is kept while the policy is in force (from CRAM)."
-  (check-in-clause form environment)
+  (check-inside-policy-clause form environment)
   `(store-policy-value ,+use-variable+ ,name ,value))
 
 ;;; Defining.
@@ -116,17 +117,17 @@ missing :INIT counts as (:init t), because the plan of :INIT checks the argument
          (macroexpand-1 `(interp-lambda (,+use-variable+ ,@parameters) ,@(rest clause))
                         environment))))
 
-(defun name-arguments-in (operator form)
+(defun first-arguments-in (operator form)
   "Return the first arguments of all calls of OPERATOR, POLICY-GET or POLICY-SETF, in FORM."
   (when (consp form)
     (append (and (eq operator (first form)) (consp (rest form)) (list (second form)))
             (loop for rest = form then (cdr rest)
-                  while (consp rest) append (name-arguments-in operator (car rest))))))
+                  while (consp rest) append (first-arguments-in operator (car rest))))))
 
 (defun warn-of-unstored-names (definition clauses)
-  (let ((kept (name-arguments-in 'policy-setf clauses)))
+  (let ((kept (first-arguments-in 'policy-setf clauses)))
     (when (every #'constantp kept)
-      (dolist (name (set-difference (name-arguments-in 'policy-get clauses) kept :test #'equal))
+      (dolist (name (set-difference (first-arguments-in 'policy-get clauses) kept :test #'equal))
         (when (constantp name)
           (warn-of-style "~A: (policy-get ~(~S~)) returns NIL, because no clause stores it.~
                              ~@[ Stored: ~{~(~S~)~^, ~}.~]"
@@ -135,7 +136,7 @@ missing :INIT counts as (:init t), because the plan of :INIT checks the argument
 (defun policy-code (definition name parameters clauses environment)
   (check-policy-clauses definition clauses)
   (warn-of-unstored-names definition clauses)
-  (let ((parameters (plain-parameters parameters parameters environment definition)))
+  (let ((parameters (untyped-parameters parameters parameters environment definition)))
     `(%make-policy ',name ',parameters
                    ,@(loop for kind in '(:init :check :recover :clean-up)
                            collect (clause-code kind parameters clauses environment)))))
@@ -155,7 +156,7 @@ the policy. The clauses, after an optional documentation string, are plan text: 
                        false.
 The clauses share values by POLICY-GET and POLICY-SETF. See WITH-NAMED-POLICY. Return NAME. Signals
 MALFORMED-DEFINITION. (From CRAM, where the check is polled.)"
-  (let ((definition (title "define-policy" name))
+  (let ((definition (definition-title "define-policy" name))
         (text (and (stringp (first clauses)) (pop clauses))))
     (expand-definition
      form environment
@@ -176,7 +177,7 @@ the variables around MAKE-POLICY. (From CRAM, where MAKE-POLICY takes a name.)"
 
 ;;; Being in force.
 
-(defun named-policy-text (policy arguments body)
+(defun named-policy-form (policy arguments body)
   "Return plan text that runs BODY while POLICY is in force with ARGUMENTS. BODY and ARGUMENTS are
 lists of forms, POLICY is a form."
   (with-gensyms (use over met value refused)
@@ -201,7 +202,7 @@ lists of forms, POLICY is a form."
                ,value)
           (if (not ,refused) ,(clause 'policy-clean-up)))))))
 
-(defun nested-policies-text (policies body form)
+(defun nested-policies-form (policies body form)
   (unless (proper-list-p policies)
     (reject-clause (text-title) form "(with-policies ((policy (argument...))...) form...)"))
   (dolist (policy policies)
@@ -209,7 +210,7 @@ lists of forms, POLICY is a form."
       (reject-clause (text-title) policy "(policy (argument...)) for each policy")))
   (loop with text = `(seq ,@body)
         for (policy arguments) in (reverse policies)
-        do (setf text (named-policy-text policy arguments (list text)))
+        do (setf text (named-policy-form policy arguments (list text)))
         finally (return text)))
 
 (defun check-policy-arguments (arguments form scope)
@@ -228,13 +229,13 @@ policy of the manual's WITH-POLICY is plan text.)"
   (:code
    (progn
      (check-policy-arguments arguments form scope)
-     (plan-code (note-expansion (nested-policies-text `((,policy ,arguments)) body form) form)
+     (plan-code (note-expansion (nested-policies-form `((,policy ,arguments)) body form) form)
                 scope))))
 
 (define-construct with-policies (policies &body body)
   "Run BODY in a plan while POLICIES, each (policy (argument...)) as in WITH-NAMED-POLICY, are in
 force. The first policy starts first and takes precedence over the others. (From CRAM.)"
-  (:code (plan-code (note-expansion (nested-policies-text policies body form) form) scope)))
+  (:code (plan-code (note-expansion (nested-policies-form policies body form) form) scope)))
 
 (define-construct with-named-policies (policies &body body)
   "Do as WITH-POLICIES. (From CRAM.)"

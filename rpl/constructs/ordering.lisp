@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.constructs)
 
-(defun over-p (status)
+(defun over-status-p (status)
   (and (member status '(:succeeded :failed :evaporated)) t))
 
 (defun continue-with-outcome (target task frame)
@@ -19,7 +19,7 @@
 (defmethod awaited-text ((joining joining))
   (format nil "the end of ~A" (task-label (joining-target joining))))
 
-(defmethod withdraw (task (joining joining))
+(defmethod remove-waiting-task (task (joining joining))
   (unwatch (joining-watcher joining)))
 
 (defmethod tasks-awaited ((joining joining))
@@ -32,10 +32,10 @@
   (wake (watcher-client watcher) nil))
 
 (defun await-end (target task)
-  (let ((watcher (make-watcher (fl-funcall 'over-p (task-status target)) #'end-join task)))
+  (let ((watcher (make-watcher (fl-funcall 'over-status-p (task-status target)) #'end-join task)))
     (watch watcher)
     (park task (make-joining target watcher))
-    (report-circle task)))
+    (report-wait-cycle task)))
 
 (define-construct join-task (task)
   "Wait in a plan until TASK is over. Return the value of TASK, or fail as TASK failed. Return NIL
@@ -89,7 +89,7 @@ EARLIER is true. WATCHER waits for EARLIER."
   "Return the fluent that becomes true when ORDER allows its later task to start."
   (let ((earlier (order-earlier order)))
     (if (task-p earlier)
-        (fl-funcall 'over-p (task-status earlier))
+        (fl-funcall 'over-status-p (task-status earlier))
         earlier)))
 
 (defun enforce-order (order task)
@@ -195,7 +195,7 @@ fluent, b starts when the fluent is true, or has been pulsed since PARTIAL-ORDER
 The constraints hold until PARTIAL-ORDER ends. A task that has started already cannot be b. Cycles
 of the tags in STEPS are errors when the plan is defined; other cycles are reported as a deadlock.
 Return the first value of the last step (from CRAM, except for the value)."
-  (:parts (branches simple-vector (branches-code steps (single-scope scope)))
+  (:parts (branches simple-vector (branches-code steps (single-value-scope scope)))
           (pairs function (orders-lambda steps constraints form scope)))
   (:code (with-tags-code form (tags-in steps) scope #'build))
   (:steps

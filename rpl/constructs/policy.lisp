@@ -12,7 +12,7 @@
        (find-call #'fail-p (list policy))
        (not (suspends-p (subst-if nil #'fail-p policy) scope))))
 
-(defun waiting-policy-text (policy)
+(defun waiting-policy-form (policy)
   (and (operator-in-p policy '("IF" "WHEN"))
        (or (operator-in-p policy '("WHEN")) (null (cdddr policy)))
        `(seq (wait-until ,(second policy)) ,@(cddr policy))))
@@ -27,7 +27,7 @@
     "HANDLE-FAILURE" "WITH-FAILURE-HANDLING")
   "Names of operators that end when a form in their body is (return value).")
 
-(defun lost-return-value (policy)
+(defun lost-return-form (policy)
   "Return the (return value) that ends POLICY, a WHENEVER, and whose value is lost; or NIL."
   (and (operator-in-p policy '("WHENEVER"))
        (null (find-call (lambda (form) (operator-in-p form *constructs-left-by-return*))
@@ -37,26 +37,28 @@
                          (not (member (second form) '(nil t)))))
                   (cddr policy))))
 
-(defun warn-of-policy (policy form scope)
+(defun warn-of-policy-mistake (policy form scope)
   "Warn if POLICY, the policy of FORM in SCOPE, waits for nothing, does nothing after its wait, or
 returns a value."
   (let ((once-p (tests-once-p policy scope)))
     (cond ((or once-p (not (suspends-p policy scope)))
-           (style-warn-of-own form "the policy ~S waits for nothing: it runs once, before the ~
+           (style-warn-of-plan-text form
+                                    "the policy ~S waits for nothing: it runs once, before the ~
                                     body, and then ends. ~:[Write (whenever test form...), or ~
                                     (seq (wait-for fluent) form...)~;Write ~:*~S~]."
-                              policy (and once-p (waiting-policy-text policy))))
+                                    policy (and once-p (waiting-policy-form policy))))
           ((only-waits-p policy scope)
-           (style-warn-of-own form "the policy ~S does nothing after its wait, so it has no ~
+           (style-warn-of-plan-text form "the policy ~S does nothing after its wait, so it has no ~
                                     effect. Write what the policy must do: (seq ~:*~S form...), or ~
                                     (whenever fluent form...) to react each time."
-                              policy))
-          ((lost-return-value policy)
-           (style-warn-of-own form "~S ends only the policy, and its value is lost; the body goes ~
+                                    policy))
+          ((lost-return-form policy)
+           (style-warn-of-plan-text form
+                                    "~S ends only the policy, and its value is lost; the body goes ~
                                     on. (fail ...) in the policy ends the whole form; (pursue ~
                                     (seq (wait-for fluent) value) form...) returns the value of ~
                                     the form that ends first."
-                              (lost-return-value policy))))))
+                                    (lost-return-form policy))))))
 
 (defun looks-like-policy-p (policy)
   (find-call (lambda (form)
@@ -81,21 +83,22 @@ never ends and POLICY a list of steps, or if BODY only waits and then fails, as 
                    (or (operator-in-p policy '("SEQ" "PROGN"))
                        (find-call #'fail-p (first body)))
                    (waits-then-fails-p body)))
-      (style-warn-of-own form "the body ~S ~:[waits, and then fails~;never ends~], and ~S runs ~
+      (style-warn-of-plan-text form
+                               "the body ~S ~:[waits, and then fails~;never ends~], and ~S runs ~
                                once, in parallel. Write the policy before the body: (with-policy ~
                                ~:[(seq (wait-for ...) (fail ...))~;(whenever ...)~] form...)."
-                         (if (rest body) (cons 'seq body) (first body))
-                         endless-p policy endless-p))))
+                               (if (rest body) (cons 'seq body) (first body))
+                               endless-p policy endless-p))))
 
 (define-construct with-policy (policy &body body)
   "Run BODY in a plan while POLICY, a form, runs in parallel. POLICY starts first and takes
 precedence. POLICY evaporates when BODY ends. If POLICY or BODY fails, WITH-POLICY fails. Return the
 first value of BODY (manual D.4; reading 186)."
   (:manual)
-  (:parts (policy node (progn (warn-of-policy policy form scope)
+  (:parts (policy node (progn (warn-of-policy-mistake policy form scope)
                              (warn-of-swapped-policy policy body form)
-                             (plan-code policy (single-scope scope))))
-          (body node (body-code body (single-scope scope))))
+                             (plan-code policy (single-value-scope scope))))
+          (body node (body-code body (single-value-scope scope))))
   (:steps
    (begin
     (next inside)

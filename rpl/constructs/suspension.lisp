@@ -61,7 +61,7 @@ status of TASK is :BLOCKED meanwhile. From CRAM (2009)."
 loss of a valve, run REACTION at once, before the task stops. REACTION is a form that cannot wait,
 such as a command that stops the robot. An error in REACTION becomes a message and has no other
 effect. Return the value of BODY. (From CRAM, except that REACTION cannot wait.)"
-  (:parts (reaction node (refuse-code reaction scope form))
+  (:parts (reaction node (leaf-code-or-reject reaction scope form))
           (body node (body-code body scope)))
   (:steps
    (begin
@@ -103,4 +103,4 @@ Return the value of BODY. In ordinary Lisp, WITHOUT-SCHEDULING is PROGN. (From C
 BODY cannot wait, because no other task could run meanwhile.)"
   (:waits :may)
   (:in-lisp `(progn ,@body))
-  (:code (refuse-code (note-own-text `(progn ,@body)) scope form)))
+  (:code (leaf-code-or-reject (note-plan-text `(progn ,@body)) scope form)))

@@ -6,7 +6,7 @@
   (unless (or (task-variable-p name)
               (and (symbolp name) (variable-name-p name)
                    (not (eq :special (variable-kind name)))))
-    (reject-clause (title "define-task-variable" name) name
+    (reject-clause (definition-title "define-task-variable" name) name
                    "a symbol that is not yet a variable and belongs to no locked package")))
 
 (addition define-task-variable)
@@ -19,7 +19,7 @@ variable too, if they are compiled after its definition. Evaluating the definiti
 value, as DEFPARAMETER does. (From CRAM, except for setting the variable in a task.)"
   (check-task-variable name)
   (unless (typep documentation '(or null string))
-    (reject-clause (title "define-task-variable" name) documentation
+    (reject-clause (definition-title "define-task-variable" name) documentation
                    "(define-task-variable name value [string])"))
   `(progn
      (eval-when (:compile-toplevel :load-toplevel :execute)

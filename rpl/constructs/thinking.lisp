@@ -68,7 +68,7 @@ other tasks stop meanwhile. The body of the WITH-CHARGE has ended with RESULT or
         (max 0 (- (+ (thought-start thought) (thought-ticks thought)) now))
         0)))
 
-(defun start-priced-branch (body task environment)
+(defun start-uncharged-branch (body task environment)
   "Start BODY as a part of TASK whose steps are not charged. Return what a step returns."
   (let ((branch (start-branch body task environment 0 (task-level task))))
     (when (runner-charged-p (task-runner task)) (setf (task-uncounted-p branch) t)))
@@ -96,7 +96,7 @@ Signals WRONG-ARGUMENT (manual 1.2)."
     ;; An invalid price fails before there is a thought.
     (setf memory (begin-thought task (funcall span environment) (funcall alone environment)))
     (next inside)
-    (start-priced-branch body task environment))
+    (start-uncharged-branch body task environment))
    (inside
     (next thinking)
     (setf (thought-result memory) value)

@@ -57,7 +57,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
   (next nil :type (or null turn)))
 (declaim-final line turn)
 
-(define-membership turn turn-line :in line :join join-line :leave leave-line)
+(define-linked-list turn turn-line :in line :join join-line :leave leave-line)
 
 ;; In a fork whose plans do not refer to it, it is free.
 (defmethod fresh-twin ((valve valve) realm)
@@ -169,29 +169,29 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
 ;;; The lines of a valve are a treap: a tree in which each line has more weight than those below it.
 ;;; Weights are pseudo-random, so that it is hardly ever deep.
 
-(defun split-lines (tree line)
+(defun split-line-tree (tree line)
   "Return two trees: the lines of TREE that go before LINE, and the other lines of TREE."
   (cond ((null tree) (values nil nil))
         ((line-before-p tree line)
-         (multiple-value-bind (ahead behind) (split-lines (line-behind tree) line)
+         (multiple-value-bind (ahead behind) (split-line-tree (line-behind tree) line)
            (setf (line-behind tree) ahead)
            (values tree behind)))
-        (t (multiple-value-bind (ahead behind) (split-lines (line-ahead tree) line)
+        (t (multiple-value-bind (ahead behind) (split-line-tree (line-ahead tree) line)
              (setf (line-ahead tree) behind)
              (values ahead tree)))))
 
-(defun joined-lines (ahead behind)
+(defun join-line-trees (ahead behind)
   "Return one tree of the lines of AHEAD and, after those, the lines of BEHIND."
   (cond ((null ahead) behind)
         ((null behind) ahead)
         ((> (line-weight ahead) (line-weight behind))
-         (setf (line-behind ahead) (joined-lines (line-behind ahead) behind))
+         (setf (line-behind ahead) (join-line-trees (line-behind ahead) behind))
          ahead)
-        (t (setf (line-ahead behind) (joined-lines ahead (line-ahead behind)))
+        (t (setf (line-ahead behind) (join-line-trees ahead (line-ahead behind)))
            behind)))
 
 (defun without-line (tree line)
-  (cond ((eq tree line) (joined-lines (line-ahead line) (line-behind line)))
+  (cond ((eq tree line) (join-line-trees (line-ahead line) (line-behind line)))
         ((line-before-p line tree)
          (setf (line-ahead tree) (without-line (line-ahead tree) line))
          tree)
@@ -207,10 +207,10 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
 (defun ensure-line (claim valve)
   (let ((line (make-line valve (claim-priority claim) (task-level (claim-task claim)))))
     (or (find-line line (valve-lines valve))
-        (multiple-value-bind (ahead behind) (split-lines (valve-lines valve) line)
+        (multiple-value-bind (ahead behind) (split-line-tree (valve-lines valve) line)
           ;; As different from the last weight as can be.
           (setf (line-weight line) (ldb (byte 32 0) (* 2654435769 (incf (valve-count valve))))
-                (valve-lines valve) (joined-lines (joined-lines ahead line) behind))
+                (valve-lines valve) (join-line-trees (join-line-trees ahead line) behind))
           line))))
 
 (defun queue-up (claim)
@@ -227,7 +227,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
         (let ((valve (line-valve line)))
           (setf (valve-lines valve) (without-line (valve-lines valve) line)))))))
 
-(defmethod withdraw (task (claim claim))
+(defmethod remove-waiting-task (task (claim claim))
   (leave-queues claim))
 
 (defun next-in-line (line)
@@ -253,7 +253,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
     (unless (claim-lost claim) (grant-queued-claims (claim-task claim)))))
 
 ;; The new owner has no parts yet, and at least the priority of those in line: no other can have it.
-(defun grant-waiting (valve)
+(defun grant-released-valve (valve)
   "Grant the first grantable claim waiting for VALVE. Then give VALVE back to losers, if possible."
   (let ((claim (some-line #'next-in-line (valve-lines valve))))
     (when claim (grant-queued-claim claim)))
@@ -273,7 +273,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
     (loop for valve in valves
           for owner in (mapcar (lambda (valve) (first (valve-claims valve))) valves)
           when (eq owner (first (valve-claims valve)))
-            do (grant-waiting valve))))
+            do (grant-released-valve valve))))
 
 ;;; Circles.
 

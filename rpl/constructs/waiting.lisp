@@ -4,7 +4,7 @@
 
 (addition deadline-missed deadline-missed-ticks)
 
-(defun time-out (timer)
+(defun wake-at-timeout (timer)
   (let ((task (timer-client timer)))
     (setf (task-timer task) nil)
     (stop-waiting task)
@@ -15,12 +15,12 @@
     (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) function task)))
 
 (defun start-timer (task ticks)
-  (setf (task-timer task) (make-timer-after ticks task #'time-out)))
+  (setf (task-timer task) (make-timer-after ticks task #'wake-at-timeout)))
 
 (defun span-in-ticks (span unit operator)
   "Return SPAN, a number or fluent, in ticks. UNIT is :ticks or :seconds. Errors name OPERATOR."
   (let ((span (fluent-value span)))
-    (unless (quantity-p span)
+    (unless (bounded-number-p span)
       (reject-argument operator 'span span "a number from -1e15 to 1e15"))
     (case unit
       (:ticks span)
@@ -37,7 +37,8 @@
   "Return a lambda expression that returns SPAN in ticks. SPAN and UNIT are forms in FORM."
   (check-unit unit form)
   (when (and (realp span) (minusp span))
-    (style-warn-of form "~(~A~) does not wait for ~A, which is less than 0." (first form) span))
+    (style-warn-of-form form "~(~A~) does not wait for ~A, which is less than 0." (first form)
+                        span))
   (value-lambda `(span-in-ticks ,span (or ,unit :ticks) ',operator) scope))
 
 (define-construct wait-time (span &key unit)
@@ -73,7 +74,7 @@ number up to 1e15. If SPAN is 0 or less, do not wait."
     (setf (task-signal task) (failure-of trouble task (task-frame task))))
   (wake task value))
 
-(defun wait-for-change (task condition)
+(defun wait-until-true (task condition)
   "Let TASK wait until CONDITION, a fluent that is false, becomes true. If CONDITION is no fluent,
 it never changes, and TASK waits forever."
   (if (fluent-p condition)
@@ -87,7 +88,7 @@ it never changes, and TASK waits forever."
 
 (defun checked-timeout (timeout)
   (let ((timeout (fluent-value timeout)))
-    (check-argument wait-for timeout (or (null timeout) (quantity-p timeout))
+    (check-argument wait-for timeout (or (null timeout) (bounded-number-p timeout))
                     "a number of ticks, from -1e15 to 1e15, or NIL")
     timeout))
 
@@ -110,13 +111,13 @@ ticks have passed (manual C). TIMEOUT is a number up to 1e15."
             ((and timeout (<= (the real timeout) 0)) (values (frame-up frame) nil))
             (t (next waiting)
                (when timeout (start-timer task timeout))
-               (wait-for-change task fluent)
+               (wait-until-true task fluent)
                +parked+))))
    (waiting (values (frame-up frame) value))))
 
 ;;;; Reacting to events
 
-(defun count-event (watcher value trouble)
+(defun run-or-count-event (watcher value trouble)
   "Let the task of WATCHER run the body of its WHENEVER, or count the event for later."
   (declare (ignore value))
   (let* ((task (watcher-client watcher))
@@ -132,7 +133,7 @@ ticks have passed (manual C). TIMEOUT is a number up to 1e15."
 is the view itself; for any other fluent, a watcher; for anything else, NIL."
   (cond ((not (fluent-p condition)) nil)
         ((counts-each-event-p condition) condition)
-        (t (let ((watcher (make-watcher condition #'count-event task)))
+        (t (let ((watcher (make-watcher condition #'run-or-count-event task)))
              (watch watcher)
              watcher))))
 
@@ -143,7 +144,7 @@ is the view itself; for any other fluent, a watcher; for anything else, NIL."
              (park task (watcher-fluent source))))
         ((null source) (wait-forever task))
         ((fluent-value source) (give-way task))
-        (t (wait-for-change task source)))
+        (t (wait-until-true task source)))
   +parked+)
 
 (defun take-events (source missed)
@@ -160,7 +161,7 @@ is the view itself; for any other fluent, a watcher; for anything else, NIL."
            (consp (first condition))
            (known-variable-p (first condition) environment))))
 
-(defun split-condition (condition scope)
+(defun split-whenever-condition (condition scope)
   "Return a list of two forms in CONDITION, the first argument of a WHENEVER: the form of the fluent
 and the value of :missed. Signals MALFORMED-DEFINITION."
   (cond ((not (fluent-with-options-p condition (scope-environment scope))) (list condition :once))
@@ -177,10 +178,11 @@ instant. WHENEVER ends only by RETURN, failure or evaporation (manual D.4). Even
 count as one event, as with (FLUENT :missed :once) as the first argument. With (FLUENT :missed
 :all), or if FLUENT is a view with :ALWAYS, BODY runs once for each event."
   (:manual)
-  (:arguments (first (split-condition fluent scope)))
-  (:parts (condition function (awaited-lambda (first (split-condition fluent scope)) form scope))
-          (missed function (value-lambda (second (split-condition fluent scope)) scope))
-          (body node (body-code body (single-scope scope))))
+  (:arguments (first (split-whenever-condition fluent scope)))
+  (:parts (condition function
+                     (awaited-lambda (first (split-whenever-condition fluent scope)) form scope))
+          (missed function (value-lambda (second (split-whenever-condition fluent scope)) scope))
+          (body node (body-code body (single-value-scope scope))))
   (:code (block-code nil form scope #'build))
   (:steps
    (begin
@@ -202,7 +204,7 @@ count as one event, as with (FLUENT :missed :once) as the first argument. With (
 
 ;;;; Waiting for any condition
 
-(defun wait-until-text (condition)
+(defun wait-until-form (condition)
   "Return plan text that waits until the form CONDITION is true, and returns its value."
   (with-gensyms (met again value)
     `(block ,met
@@ -214,20 +216,20 @@ count as one event, as with (FLUENT :missed :once) as the first argument. With (
           (wait-time 1)
           (go ,again)))))
 
-(defun warn-of-polled-condition (condition form)
+(defun warn-of-wait-condition (condition form)
   (let ((advice (if (realp condition)
                     (format nil "~S is a number, which counts as true. To let time pass, write ~
                                  (wait-time ~:*~S)." condition)
                     (test-advice condition))))
-    (when advice (style-warn-of-own form "wait-until: ~A" advice))))
+    (when advice (style-warn-of-plan-text form "wait-until: ~A" advice))))
 
 (define-construct wait-until (condition)
   "Wait in a plan until the form CONDITION is true; return the value of CONDITION. If the value is a
 fluent or a network, as for (< level 46) where LEVEL is a fluent, wait for that fluent. Otherwise
 test CONDITION again at each tick. CONDITION may itself wait. (Policies and AT-LOCATION watch their
 conditions as WAIT-UNTIL does.)"
-  (:code (progn (warn-of-polled-condition condition form)
-                (plan-code (note-expansion (wait-until-text condition) form) scope))))
+  (:code (progn (warn-of-wait-condition condition form)
+                (plan-code (note-expansion (wait-until-form condition) form) scope))))
 
 ;;;; Deadlines
 
@@ -253,7 +255,7 @@ conditions as WAIT-UNTIL does.)"
                                                    :ticks (car (frame-data frame)))
                                    task frame)))))
 
-(defun end-deadline (task memory)
+(defun cancel-deadline (task memory)
   (when memory (cancel-timer (cdr memory) (runner-timers (task-runner task)))))
 
 (define-construct with-deadline ((span &key unit) &body body)
@@ -273,9 +275,9 @@ number up to 1e15; with 0 or less BODY must not take any time. (CRAM has a timeo
     (await-parts task))
    (over (values (frame-up frame) value)))
   (:unwind
-   (end-deadline task (shiftf memory nil))
+   (cancel-deadline task (shiftf memory nil))
    nil)
   (:child-ended
-   (end-deadline task (shiftf memory nil))
+   (cancel-deadline task (shiftf memory nil))
    (or (fail-or-escape task how result)
        (end-with-value task (and (eq how :succeeded) result)))))

@@ -16,7 +16,7 @@
 (defun checked-claim (priority valves task)
   (let ((priority (or (fluent-value priority) 0))
         (valves (remove-duplicates (mapcar #'valve-for valves))))
-    (check-argument with-valve priority (quantity-p priority) "a number from -1e15 to 1e15")
+    (check-argument with-valve priority (bounded-number-p priority) "a number from -1e15 to 1e15")
     (make-claim task valves priority)))
 
 (defun claim-or-queue (claim task)
@@ -24,10 +24,10 @@
   (cond ((grantable-p claim) (grant-claim claim) t)
         (t (queue-up claim)
            (park task claim)
-           (report-circle task)
+           (report-wait-cycle task)
            nil)))
 
-(defun claim-form (priority valves scope)
+(defun claim-lambda (priority valves scope)
   "Return a lambda expression that returns a cons: the value of PRIORITY, and a list of the valves."
   (dolist (valve valves)
     (when (and (name-without-quote-p valve scope) (fboundp valve))
@@ -49,7 +49,7 @@ owner are not disturbed.
 If tasks wait for each other's valves, an error message says so (manual D; priorities are an
 addition)."
   (:arguments valve priority)
-  (:parts (request function (claim-form priority (list valve) scope))
+  (:parts (request function (claim-lambda priority (list valve) scope))
           (body node (body-code body scope)))
   (:steps
    (begin
@@ -81,5 +81,5 @@ order in which tasks name the valves does not matter. Otherwise do as WITH-VALVE
   (:like with-valve)
   (:arguments &rest valves)
   (:parts (request function (multiple-value-bind (valves priority) (split-valves valves)
-                              (claim-form priority valves scope)))
+                              (claim-lambda priority valves scope)))
           (body node (body-code body scope))))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(make-watcher watcher watcher-p define-membership home-forked-p declare-fluent-variable
-          known-pulse-p known-fluent-variable-p known-vector-variable-p robots-fluent-p))
+(export '(make-watcher watcher watcher-p define-linked-list home-forked-p declare-fluent-variable
+          known-pulse-p known-fluent-variable-p vector-variable-kind robot-fluent-p))
 
 ;;; A base fluent is set. A derived fluent is computed from its sources. While it has no user, it is
 ;;; computed on demand and its sources have no link to it. Its first user, a watcher or a used
@@ -134,7 +134,7 @@ Signals WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
 
 ;;; Doubly linked lists, so that leaving one costs the same however many are in it.
 
-(defmacro define-membership (type list-of &key (in 'fluent) join leave)
+(defmacro define-linked-list (type list-of &key (in 'fluent) join leave)
   "Define the functions JOIN and LEAVE, which append a member of TYPE to a doubly linked list or
 remove it. (LIST-OF member) returns the structure of type IN that has the list in its slots
 FIRST-TYPE and LAST-TYPE."
@@ -165,13 +165,13 @@ FIRST-TYPE and LAST-TYPE."
            (setf (,previous member) nil
                  (,next member) nil))))))
 
-(define-membership watcher watcher-fluent :join join-watchers :leave leave-watchers)
-(define-membership link link-source :join join-links :leave leave-links)
+(define-linked-list watcher watcher-fluent :join join-watchers :leave leave-watchers)
+(define-linked-list link link-source :join join-links :leave leave-links)
 
 ;;; For parts of which the robot has several, such as cameras, a variable holds a vector of
 ;;; fluents. A vector is always true, so a condition never means it.
 
-(defvar *known-variables* (make-hash-table :test 'eq :synchronized t)
+(defvar *known-fluent-variables* (make-hash-table :test 'eq :synchronized t)
   "A table from variables to lists (kind pulsed-p). If the variable holds a fluent, KIND is T. If it
 holds a vector of fluents, one for each part of a kind, KIND names this kind. PULSED-P is true if
 these fluents are pulsed and never set.")
@@ -179,19 +179,19 @@ these fluents are pulsed and never set.")
 (defun declare-fluent-variable (name &key (kind t) pulsed-p)
   "Record that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string.
 If PULSED-P is true, these fluents are pulsed and never set."
-  (setf (gethash name *known-variables*) (list kind pulsed-p)))
+  (setf (gethash name *known-fluent-variables*) (list kind pulsed-p)))
 
 (defun known-pulse-p (name)
   "True if the variable NAME holds fluents that are pulsed and never set."
-  (and (symbolp name) (second (gethash name *known-variables*))))
+  (and (symbolp name) (second (gethash name *known-fluent-variables*))))
 
 (defun known-fluent-variable-p (name)
   "True if the variable NAME is known to hold a fluent."
-  (eq t (first (gethash name *known-variables*))))
+  (eq t (first (gethash name *known-fluent-variables*))))
 
-(defun known-vector-variable-p (name)
+(defun vector-variable-kind (name)
   "Return the kind of part for which the variable NAME holds a vector of fluents; or NIL."
-  (let ((kind (first (gethash name *known-variables*))))
+  (let ((kind (first (gethash name *known-fluent-variables*))))
     (and (stringp kind) kind)))
 
 (defmethod value-to-pass-text ((fluent fluent))
@@ -208,14 +208,14 @@ If PULSED-P is true, these fluents are pulsed and never set."
          (variable (subseq name 0 (position #\Space name :from-end t))))
     (reject-use "~A is a vector of fluents: ~A needs one of them. Write (vref ~2:*~A~* ~A)."
                 variable user
-                (or (known-vector-variable-p (known-variable-named variable)) "index"))))
+                (or (vector-variable-kind (fluent-variable-named variable)) "index"))))
 
-(defun known-variable-named (name)
-  (loop for variable being the hash-keys of *known-variables*
+(defun fluent-variable-named (name)
+  (loop for variable being the hash-keys of *known-fluent-variables*
         when (string-equal name variable) return variable))
 
-(defun robots-fluent-p (fluent)
+(defun robot-fluent-p (fluent)
   "True if FLUENT is a fluent that the robot sets. Such a fluent has the name of a known variable,
 or of an element of such a variable's vector."
   (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
-    (and (known-variable-named (subseq name 0 space)) t)))
+    (and (fluent-variable-named (subseq name 0 space)) t)))

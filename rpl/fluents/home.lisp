@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*runner* *interface* home-in-use note-outside-change home at-home call-at-home home-busy-p
-          post next-entry posted-p))
+(export '(*runner* *default-interface* default-home note-outside-change home with-owned-home
+                   call-with-owned-home home-busy-p
+          post-entry take-posted-entry posted-p))
 
 ;;; A fluent that a task waits for has a home, the plan runner of that task. One thread at a time
 ;;; works in a home. Other threads post their changes, which are applied in the order of posting.
@@ -40,10 +41,10 @@ entry, or NIL" :writable))
 (defvar *runner* nil
   "The plan runner that this thread owns, while its plans run.")
 
-(defvar *interface* nil
+(defvar *default-interface* nil
   "The default owner of plans and fluents, or NIL: see RPL-INIT-ROBOT.")
 
-(defgeneric home-in-use (interface)
+(defgeneric default-home (interface)
   (:documentation "Return the home, or NIL, in which code outside of INTERFACE's plans changes a
 fluent without a home.")
   (:method (interface) (declare (ignore interface)) nil))
@@ -89,7 +90,7 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
   (loop until (take-home home) do (yield-thread))
   t)
 
-(defun call-at-home (home function)
+(defun call-with-owned-home (home function)
   "Call FUNCTION while this thread owns HOME. If another thread owns HOME, wait until HOME is free."
   (declare (type function function))
   (cond ((eq home *runner*) (funcall function))
@@ -97,22 +98,22 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
          (let ((*runner* home)) (funcall function)))
         (t (call-owning-home home #'wait-for-home function))))
 
-(defmacro at-home ((home) &body body)
-  "Run BODY while this thread owns HOME, as CALL-AT-HOME does."
+(defmacro with-owned-home ((home) &body body)
+  "Run BODY while this thread owns HOME, as CALL-WITH-OWNED-HOME does."
   `(flet ((body () ,@body))
      (declare (dynamic-extent #'body))
-     (call-at-home ,home #'body)))
+     (call-with-owned-home ,home #'body)))
 
 ;;; Posting.
 
-(defun post (home entry)
+(defun post-entry (home entry)
   "Append ENTRY, a list of settings or a function, to the entries posted to HOME."
   (let ((wrapper (home-wrapper home)))
     (atomic-push (if wrapper (funcall wrapper entry) entry) (home-inbox home)))
   (funcall (home-on-post home))
   (values))
 
-(defun next-entry (home)
+(defun take-posted-entry (home)
   "Remove the oldest entry posted to HOME. Return the entry and true, or NIL and false if none."
   (unless (home-outbox home)
     (loop for entries = (home-inbox home)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.fluents)
 
 (export '(base-fluents depends-p was-read-p forget-reading fluent-watchers fluent-text
-          operand-value one-fluent truth-value unwatch watch repair-fluents))
+          operand-value checked-condition truth-value unwatch watch repair-fluents))
 
 ;;; Computing.
 
@@ -84,7 +84,7 @@ just set the fluent, so a caller that waits for it to become true must check it 
 
 ;;; Reading.
 
-(defun value-in-use (fluent)
+(defun used-fluent-value (fluent)
   "Return the value of FLUENT, which is in use. Signal the error of its last computation, if any."
   (when (and (derived-p fluent) (derived-trouble fluent))
     (error (derived-trouble fluent)))
@@ -93,14 +93,14 @@ just set the fluent, so a caller that waits for it to become true must check it 
 
 (defun current-value (fluent)
   "Return the value of FLUENT. If FLUENT is derived and not in use, compute the value."
-  (cond ((or (not (derived-p fluent)) (plusp (derived-users fluent))) (value-in-use fluent))
+  (cond ((or (not (derived-p fluent)) (plusp (derived-users fluent))) (used-fluent-value fluent))
         ((= 1 (fluent-height fluent)) (compute fluent))
         (t (add-user fluent)
-           (unwind-protect (value-in-use fluent)
+           (unwind-protect (used-fluent-value fluent)
              (remove-user fluent)))))
 
-(declaim (inline one-fluent truth-value))
-(defun one-fluent (object)
+(declaim (inline checked-condition truth-value))
+(defun checked-condition (object)
   "Return the condition OBJECT. If OBJECT is a fluent, return its twin in the current run. Signals
 MISUSE for a vector of fluents."
   (cond ((fluent-p object) (entity-here object))
@@ -110,7 +110,7 @@ MISUSE for a vector of fluents."
 (defun truth-value (object)
   "Return the truth value of the condition OBJECT: the value of a fluent, or any other OBJECT
 itself. Signals MISUSE for a vector of fluents."
-  (if (fluent-p object) (current-value (entity-here object)) (one-fluent object)))
+  (if (fluent-p object) (current-value (entity-here object)) (checked-condition object)))
 
 ;; An error fluent is of use only if it is read.
 (defun was-read-p (fluent)
@@ -135,7 +135,7 @@ itself. Signals MISUSE for a vector of fluents."
        (let ((value (symbol-value object)))
          (or (fluent-p value)
              (fluents-vector-p value)
-             (and (null value) object (gethash object *known-variables*) t)))))
+             (and (null value) object (gethash object *known-fluent-variables*) t)))))
 
 (defun reject-name-of-fluent (name)
   "Return NAME, but signal MISUSE if the symbol's value is a fluent: then the quote is a mistake."
@@ -211,11 +211,11 @@ a base fluent, return a list of FLUENT."
 
 ;;; Printing.
 
-(defconstant +most-fluents+ 100 "How many fluents the text of a network shows at most.")
+(defconstant +printed-fluents-limit+ 100 "How many fluents the text of a network shows at most.")
 
 (defun write-network (fluent stream)
   "Write to STREAM the expression that made FLUENT, or the beginning of a large expression."
-  (let ((left +most-fluents+))
+  (let ((left +printed-fluents-limit+))
     (labels ((name (fluent)
                (write-string (if (or (fluent-name fluent) (derived-p fluent))
                                  (safe-text (fluent-name fluent) :escape nil)
@@ -239,19 +239,19 @@ a base fluent, return a list of FLUENT."
   (let ((*print-case* :downcase) (*print-length* 5) (*print-level* 4))
     (with-output-to-string (stream) (write-network fluent stream))))
 
-(defvar *inside-fluent* nil
+(defvar *printing-fluent-value* nil
   "True while the value of a fluent is printed. Fluents inside that value are printed by name only,
 because the values of fluents may refer to each other.")
 
 (defun value-text (fluent)
   "Return the value of FLUENT as text, or the type of the error in computing it."
-  (handler-case (let ((*inside-fluent* t)) (safe-text (current-value (entity-here fluent))))
+  (handler-case (let ((*printing-fluent-value* t)) (safe-text (current-value (entity-here fluent))))
     (error (condition) (format nil "error: ~A" (type-of condition)))))
 
 (defmethod print-object ((fluent fluent) stream)
   (print-unreadable-object (fluent stream)
     (format stream "fluent ~A~@[ = ~A~]" (fluent-text fluent)
-            (unless *inside-fluent* (value-text fluent)))))
+            (unless *printing-fluent-value* (value-text fluent)))))
 
 ;;; The lists of fluents may be in any state. So the watched fluents are found from the watchers,
 ;;; which are known; the links between fluents are dropped and made again.
@@ -280,7 +280,7 @@ because the values of fluents may refer to each other.")
           do (push watcher seen))
     (nreverse seen)))
 
-(defun forget-all (fluent)
+(defun reset-fluent-links (fluent)
   (setf (fluent-first-watcher fluent) nil
         (fluent-last-watcher fluent) nil
         (fluent-first-link fluent) nil
@@ -309,7 +309,7 @@ UNWANTED-P is true."
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))
     (setf (home-backlog home) (make-backlog))
-    (mapc #'forget-all fluents)
+    (mapc #'reset-fluent-links fluents)
     (dolist (watcher all)
       (setf (watcher-previous watcher) nil
             (watcher-next watcher) nil)

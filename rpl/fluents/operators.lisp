@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(function-designator-p counts-each-event-p lifting))
+(export '(function-designator-p counts-each-event-p call-lifted))
 
 ;;; A view is a network with a memory. Reading it, by FLUENT-VALUE or by being woken by it, resets
 ;;; it; so each reader needs its own view. While a task waits for it, it is true for the
@@ -10,7 +10,7 @@
 ;;; a change. Nothing is missed while no task waits: fluents count how often they were set and
 ;;; pulsed, so that a view costs nothing until it is read.
 
-(defun count-sets (fluents)
+(defun count-settings (fluents)
   (loop for fluent in fluents sum (fluent-sets fluent)))
 
 (defun count-events (fluents)
@@ -26,7 +26,7 @@
 (defun change-since-reading (view value)
   "Return a number if VALUE, of VIEW's fluent, has changed since VIEW was last read; or NIL."
   (destructuring-bind (sets . last) (view-memory view)
-    (let ((now (count-sets (view-bases view))))
+    (let ((now (count-settings (view-bases view))))
       (unless (= sets now)
         (let ((value (funcall (view-key view) value)))
           (unless (funcall (view-test view) last value)
@@ -93,19 +93,19 @@ or wakes a task. A pulse does not count as a change. Signals WRONG-ARGUMENT. (Fr
          (bases (base-fluents fluent))
          (key (coerce key 'function)))
     (make-view 'fl-value-changed (list fluent) bases
-               (cons (count-sets bases) (funcall key (fluent-value fluent)))
+               (cons (count-settings bases) (funcall key (fluent-value fluent)))
                :test (coerce test 'function) :key key)))
 
 ;;; LIFTING is what plans turn calls of these operators into. Where no argument is a fluent it is
 ;;; plain Lisp, and where the compiler can see that none is, nothing is left of it.
 
-(defmacro lifting (operator &rest arguments &environment environment)
+(defmacro call-lifted (operator &rest arguments &environment environment)
   "Call the function OPERATOR with ARGUMENTS; return a network if any is a fluent (reading 184)."
   (let* ((bindings (loop for argument in arguments
                          unless (constantp argument environment)
                            collect (list (gensym "ARGUMENT")
                                          (if (member operator '(not null))
-                                             `(one-fluent ,argument)
+                                             `(checked-condition ,argument)
                                              argument))))
          (values (loop with variables = (mapcar #'first bindings)
                        for argument in arguments
@@ -126,17 +126,17 @@ or wakes a task. A pulse does not count as a change. Signals WRONG-ARGUMENT. (Fr
   "Return AND (if ABSORBING is NIL) or OR (if ABSORBING is T) of the values of THUNKS. Do not call
 further thunks when the result is certain. From the first fluent on, the result is a network."
   (loop for (thunk . more) on thunks
-        for value = (one-fluent (funcall (the function thunk)))
+        for value = (checked-condition (funcall (the function thunk)))
         when (fluent-p value)
           return (apply #'lift name function value
-                        (mapcar (lambda (thunk) (one-fluent (funcall (the function thunk))))
+                        (mapcar (lambda (thunk) (checked-condition (funcall (the function thunk))))
                                more))
         when (or (null more) (eq absorbing (and value t)))
           return value))
 
 ;;; The same under the names of the operators, for ordinary code. Each is also a function.
 
-(defmacro define-lifted (&rest operators)
+(defmacro define-lifted-functions (&rest operators)
   "Define functions in ARS-MAGNA.RPL.LIFTED with the names of OPERATORS, which are Lisp functions."
   `(progn
      ,@(loop for operator in operators
@@ -146,9 +146,9 @@ further thunks when the result is certain. From the first fluent on, the result 
                                  operator)
                         (apply #'lift ',operator #',operator arguments))
              collect `(define-compiler-macro ,name (&rest arguments)
-                        (list* 'lifting ',operator arguments)))))
+                        (list* 'call-lifted ',operator arguments)))))
 
-(define-lifted not null < > <= >= = + - * / eq eql equal)
+(define-lifted-functions not null < > <= >= = + - * / eq eql equal)
 
 (defmacro lifted:and (&rest forms)
   "Do as Lisp's AND. If a form's value is a fluent, return a network of it and the remaining forms."

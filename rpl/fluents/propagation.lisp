@@ -74,8 +74,8 @@ of views that are true for the instant of the change. Meanwhile networks must no
         while link
         do (enqueue (link-dependent link) backlog how)))
 
-(declaim (inline renew))
-(defun renew (derived how kind)
+(declaim (inline renew-derived-fluent))
+(defun renew-derived-fluent (derived how kind)
   "Recompute DERIVED if HOW is T, because one of its sources has changed. Do not recompute DERIVED
 if HOW is :PULSED. Notify the watchers of DERIVED of the change that spreads. The KIND of this
 change is :PULSE, :BACK after a pulse, or otherwise :CHANGE. Return how the dependents of DERIVED
@@ -97,13 +97,14 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
         do (loop
              (multiple-value-bind (derived how) (dequeue height backlog)
                (unless derived (return))
-               (let ((next (and (plusp (derived-users derived)) (renew derived how kind))))
+               (let ((next (and (plusp (derived-users derived))
+                                (renew-derived-fluent derived how kind))))
                  (when next (enqueue-dependents derived backlog next))))))
   (setf (backlog-highest backlog) 0))
 
 ;;; Views, see operators.lisp, are true for the instant of a change.
 
-(defun end-instants (instants)
+(defun reset-true-views (instants)
   "The only element of INSTANTS is a list of views. Make these views false again."
   (let ((backlog (backlog-now)))
     (dolist (view (nreverse (shiftf (first instants) '())))
@@ -111,17 +112,17 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
       (enqueue-dependents view backlog))
     (propagate-by-height backlog)))
 
-(defmacro propagating (&body body)
+(defmacro with-propagation (&body body)
   `(let* ((instants (list nil))
           (*propagating* instants))
      (declare (dynamic-extent instants))
      ,@body
-     (when (first instants) (end-instants instants))))
+     (when (first instants) (reset-true-views instants))))
 
 (defun propagate-to-dependents (fluent kind)
   "Renew the fluents that depend on FLUENT, without a backlog as long as they form a chain."
   (declare #.*hot*)
-  (propagating
+  (with-propagation
     (let ((how t))
       (loop
         (let ((link (fluent-first-link fluent)))
@@ -131,7 +132,7 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
                    (enqueue-dependents fluent backlog how)
                    (return (propagate-by-height backlog kind))))
                 (t (setf fluent (link-dependent link)
-                         how (renew fluent how kind))
+                         how (renew-derived-fluent fluent how kind))
                    (unless how (return)))))))))
 
 (defun propagate (fluent kind)
@@ -146,7 +147,7 @@ for RENEW."
   (if (and fluents (null (rest fluents)))
       (propagate (first fluents) kind)
       (let ((backlog (backlog-now)))
-        (propagating
+        (with-propagation
           (mapc #'notify-watchers fluents)
           (dolist (fluent fluents) (enqueue-dependents fluent backlog))
           (propagate-by-height backlog kind)))))
@@ -180,7 +181,7 @@ for RENEW."
 (defun foreign-home (fluent)
   "Return the home in which FLUENT must be changed, unless this thread owns that home; or NIL."
   (let ((home (home-of fluent)))
-    (cond ((null home) (and (null *runner*) (home-in-use *interface*)))
+    (cond ((null home) (and (null *runner*) (default-home *default-interface*)))
           ((eq home *runner*) nil)
           (t home))))
 
@@ -198,7 +199,7 @@ for RENEW."
            (not (funcall (home-attended-p home)))
            (call-owning-home home #'take-home (lambda () (set-now fluent value) t)))
       (funcall (home-on-post home))
-      (post home `((:set ,fluent ,value)))))
+      (post-entry home `((:set ,fluent ,value)))))
 
 (public set-value)
 (defun set-value (fluent value)
@@ -208,7 +209,7 @@ FLUENT or a network of FLUENT. Any thread may call SET-VALUE; from outside of pl
 effect when the running plans pause (manual D.2)."
   (check-settable 'set-value fluent)
   (check-no-circle 'set-value fluent value)
-  (unless *runner* (note-outside-change *interface* #'set-value fluent value))
+  (unless *runner* (note-outside-change *default-interface* #'set-value fluent value))
   (let* ((fluent (entity-here fluent)) (home (foreign-home fluent)))
     (if home
         (set-in-home home fluent value)
@@ -234,13 +235,13 @@ effect when the running plans pause (manual D.2)."
     (loop for fluent in fluents
           for value in before
           do (setf (fluent-now fluent) value))
-    (propagate-back fluents)))
+    (propagate-pulse-end fluents)))
 
-(defun propagate-back (fluents)
+(defun propagate-pulse-end (fluents)
   "Recompute the fluents that depend on FLUENTS when FLUENTS have their old values after a pulse."
   (when (some #'fluent-first-link fluents)
     (let ((backlog (backlog-now)))
-      (propagating
+      (with-propagation
         (dolist (fluent fluents) (enqueue-dependents fluent backlog))
         (propagate-by-height backlog :back)))))
 
@@ -251,9 +252,9 @@ for a network that is true at that instant. Return VALUE. Any thread may call PU
 plans PULSE takes effect when the running plans pause (manual C)."
   (check-settable 'pulse fluent)
   (check-no-circle 'pulse fluent value)
-  (unless *runner* (note-outside-change *interface* #'pulse fluent value))
+  (unless *runner* (note-outside-change *default-interface* #'pulse fluent value))
   (let* ((fluent (entity-here fluent)) (home (foreign-home fluent)))
-    (cond (home (post home `((:pulse ,fluent ,value))))
+    (cond (home (post-entry home `((:pulse ,fluent ,value))))
           (t (before-change fluent)
              (incf (fluent-pulses fluent))
              (pulse-all (list fluent) (list value)))))

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.rpl.fluents)
 
-(export '(*realm* +root+ fork-realm leave-realm source-realm entity twin-here entity-here fresh-twin
+(export '(*realm* +root+ fork-realm drop-realm-references source-realm entity twin-here entity-here
+                  fresh-twin
           foreign-entity-p next-token))
 
 ;;; Plans, vectors, networks and global variables refer to fluents. A fork needs its own states
@@ -87,7 +88,7 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
   (when (zerop (entity-token entity))
     (with-lock ((realm-lock (entity-realm entity)))
       (when (zerop (entity-token entity))
-        (setf (entity-first entity) (make-weak entity)
+        (setf (entity-first entity) (make-weak-reference entity)
               (entity-token entity) (next-token)))))
   (entity-token entity))
 
@@ -109,7 +110,7 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
   (with-lock ((realm-lock realm))
     (let ((fork (make-realm realm (incf (realm-count realm)))))
       (setf (realm-made fork) (next-token))
-      (push (cons (realm-number fork) (make-weak fork)) (realm-forks realm))
+      (push (cons (realm-number fork) (make-weak-reference fork)) (realm-forks realm))
       (when (minusp (decf (realm-room realm)))
         (setf (realm-forks realm) (remove-if-not #'weak-value (realm-forks realm) :key #'cdr)
               (realm-room realm) (max 16 (length (realm-forks realm)))))
@@ -122,7 +123,7 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
 
 (defun source-realm (copier)
   "Return the realm of the run that COPIER copies."
-  (or (copier-variable copier '*realm*) +root+))
+  (or (copied-run-value copier '*realm*) +root+))
 
 (defgeneric foreign-entity-p (entity copier)
   (:documentation "True if ENTITY does not belong to the run that COPIER copies.")
@@ -159,7 +160,8 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
   "Record FORK in REALM. The number of FORK is a number that REALM has used before."
   (with-lock ((realm-lock realm))
     (setf (realm-forks realm)
-          (merge 'list (list (cons (realm-number fork) (make-weak fork))) (realm-forks realm)
+          (merge 'list (list (cons (realm-number fork) (make-weak-reference fork)))
+                 (realm-forks realm)
                  #'> :key #'car))))
 
 (defun promote-realm (realm)
@@ -174,7 +176,7 @@ the realm of ENTITY or replaces it, and ENTITY otherwise."
             (realm-parent realm) above)
       (record-fork realm above))))
 
-(defun leave-realm (realm successor)
+(defun drop-realm-references (realm successor)
   "Remove references from SUCCESSOR to entities of REALM, and of its other forks. SUCCESSOR is a
 fork of a fork of REALM and replaces REALM. If REALM is not a fork, keep these references."
   (promote-realm successor)

@@ -28,7 +28,7 @@ parts begun; its memory is the new environment."
          (enter-tail body inner frame)))))
 
 (defun binds-special-p (variables body scope)
-  (or (declared-special variables body)
+  (or (variables-declared-special variables body)
       (some (lambda (variable) (special-variable-p variable (scope-environment scope)))
             variables)))
 
@@ -53,7 +53,7 @@ parts begun; its memory is the new environment."
 
 (defun binding-scope (scope variables bindings body sequential)
   (let ((inner (variable-scope scope variables)))
-    (inner-scope inner :fluents (append (bound-to-fluents bindings body scope sequential)
+    (inner-scope inner :fluents (append (variables-bound-to-fluents bindings body scope sequential)
                                         (scope-fluents inner)))))
 
 (defun binding-code (form bindings body scope sequential)
@@ -62,15 +62,15 @@ parts begun; its memory is the new environment."
          (variables (loop for binding in bindings
                           collect (if (consp binding) (first binding) binding)))
          (values (loop for binding in bindings collect (second (ensure-list binding))))
-         (single (single-scope scope))
+         (single (single-value-scope scope))
          (scopes (loop for i from 0 below (length bindings)
                        collect (if sequential
                                    (variable-scope single (subseq variables 0 i))
                                    single))))
-    (unless sequential (check-distinct variables form))
+    (unless sequential (check-distinct-variables variables form))
     (cond ((null bindings) (binding-body-code body scope))
-          ((binds-special-p variables body scope) (refuse-code form scope))
-          (t (check-use variables (list* (and sequential values) body) form)
+          ((binds-special-p variables body scope) (leaf-code-or-reject form scope))
+          (t (warn-of-unused-bindings variables (list* (and sequential values) body) form)
              (let ((body-code (binding-body-code
                                body (binding-scope scope variables bindings body
                                               sequential))))
@@ -105,12 +105,12 @@ parts begun; its memory is the new environment."
       (enter-tail body inner frame)))))
 
 (define-plan-form "MULTIPLE-VALUE-BIND" nil (variables source &rest body) (form scope)
-  (check-distinct variables form)
-  (cond ((binds-special-p variables body scope) (refuse-code form scope))
-        (t (check-use variables body form)
+  (check-distinct-variables variables form)
+  (cond ((binds-special-p variables body scope) (leaf-code-or-reject form scope))
+        (t (warn-of-unused-bindings variables body form)
            `(make-value-binding :form ',(form-as-written form)
                                 :count ,(length variables)
-                                :source ,(plan-code source (several-scope scope))
+                                :source ,(plan-code source (multiple-values-scope scope))
                                 :body ,(binding-body-code body
                                                           (variable-scope scope variables))))))
 
@@ -131,7 +131,7 @@ procedure's body. If OUTER is true, the first argument is the environment around
           (t `(lambda (,(scope-variable scope) ,@parameters) ,make)))))
 
 (defun lambda-suspension (parameters body scope)
-  (suspension (note-own-text `(function (lambda ,parameters ,@body))) scope))
+  (suspension (note-plan-text `(function (lambda ,parameters ,@body))) scope))
 
 (defun check-lambda-list (parameters scope)
   "Signal MISPLACED-SUSPENSION if a default form in PARAMETERS would wait."
@@ -176,7 +176,7 @@ procedure's body. If OUTER is true, the first argument is the environment around
       scope))
 
 (defun procedure-body-code (name form body scope)
-  (with-tags-code form (tags-in body) (several-scope scope)
+  (with-tags-code form (tags-in body) (multiple-values-scope scope)
                   (lambda (scope)
                     (block-code name form scope
                                 (lambda (scope) (binding-body-code body scope))))))

@@ -33,12 +33,12 @@
         (node-form node))))
 
 (defun steps-code (forms scope)
-  (let ((single (single-scope scope)))
-    (naming-code `(make-steps :form '(seq ,@forms)
-                              :parts (vector ,@(loop for (form . more) on forms
-                                                     for inner = (if more single scope)
-                                                     collect (plan-code form inner))))
-                 scope)))
+  (let ((single (single-value-scope scope)))
+    (node-naming-code `(make-steps :form '(seq ,@forms)
+                                   :parts (vector ,@(loop for (form . more) on forms
+                                                          for inner = (if more single scope)
+                                                          collect (plan-code form inner))))
+                      scope)))
 
 (defun body-code (forms scope)
   "Return code for FORMS as the steps of a body. The last form gives the values of the body."
@@ -56,7 +56,7 @@
 (defun declaration-p (form)
   (and (consp form) (eq (first form) 'declare)))
 
-(defun declared-special (variables forms)
+(defun variables-declared-special (variables forms)
   (loop for form in forms
         when (declaration-p form)
           append (loop for (kind . names) in (rest form)
@@ -76,8 +76,8 @@ Policies can run between steps. In ordinary Lisp, SEQ is PROGN (manual D.2)."
   (body-code steps scope))
 
 (define-plan-form "LOCALLY" nil (&rest steps) (form scope)
-  (if (declared-special (scope-variables scope) steps)
-      (refuse-code form scope)
+  (if (variables-declared-special (scope-variables scope) steps)
+      (leaf-code-or-reject form scope)
       (binding-body-code steps scope)))
 
 (define-plan-form "THE" nil (type part) (form scope)
@@ -87,7 +87,7 @@ Policies can run between steps. In ordinary Lisp, SEQ is PROGN (manual D.2)."
 (define-plan-form "SETQ" nil (&rest pairs) (form scope)
   (if (cddr pairs)
       (body-code (loop for (variable value) on pairs by #'cddr
-                       collect (note-own-text `(setq ,variable ,value)))
+                       collect (note-plan-text `(setq ,variable ,value)))
                  scope)
       (hoisted-code form scope 2)))
 
@@ -127,13 +127,13 @@ Policies can run between steps. In ordinary Lisp, SEQ is PROGN (manual D.2)."
   (if (null clauses)
       (leaf-code nil scope)
       (destructuring-bind ((test . body) . more) clauses
-        (let ((more (note-own-text `(cond ,@more))))
+        (let ((more (note-plan-text `(cond ,@more))))
           (if body
               (choice-code form test body (list more) scope)
-              (plan-code (note-own-text `(or ,test ,more)) scope))))))
+              (plan-code (note-plan-text `(or ,test ,more)) scope))))))
 
 (defun case-code (form operator key clauses scope)
-  (hoisting (key) form scope
+  (with-hoisted-arguments (key) form scope
     `(make-branch :form ',(form-as-written form)
                   :chooser ,(value-lambda `(,operator (operand-value ,key)
                                                       ,@(loop for (keys) in clauses
@@ -154,14 +154,14 @@ Policies can run between steps. In ordinary Lisp, SEQ is PROGN (manual D.2)."
 
 (define-plan-form "AND" nil (&rest forms) (form scope)
   (if (rest forms)
-      (choice-code form (first forms) (list (note-own-text `(and ,@(rest forms)))) '() scope)
+      (choice-code form (first forms) (list (note-plan-text `(and ,@(rest forms)))) '() scope)
       (plan-code (if forms (first forms) t) scope)))
 
 (define-plan-form "OR" nil (&rest forms) (form scope)
   (if (rest forms)
       (with-gensyms (value)
         (plan-code (note-expansion `(let ((,value ,(first forms)))
-                                      (if ,value ,value ,(note-own-text `(or ,@(rest forms)))))
+                                      (if ,value ,value ,(note-plan-text `(or ,@(rest forms)))))
                                    form)
                    scope))
       (plan-code (first forms) scope)))

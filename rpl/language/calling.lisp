@@ -12,14 +12,14 @@
   (:parts (procedure procedure) (count fixnum) (caller function))
   (:steps
    (begin
-    (cond ((defined-p procedure)
+    (cond ((procedure-usable-p procedure)
            (next inside)
            (record-call-depth task frame)
            (enter (the node (procedure-body procedure))
                   (funcall caller environment (entry-for procedure count))
                   frame))
           (t (values (frame-up frame)
-                     (multiple-value-call #'bundle-up
+                     (multiple-value-call #'bundle-several-values
                        (funcall caller environment
                                 (lisp-function (procedure-name procedure))))))))
    (inside (values (frame-up frame) value))))
@@ -46,7 +46,8 @@
 (defun check-plan-quote (plan form scope)
   "Warn if PLAN, an argument in FORM, is the unquoted name of a plan and no variable in SCOPE."
   (when (and (name-without-quote-p plan scope) (procedure-name-p plan))
-    (style-warn-of-own form "~(~A~) is a plan, not a variable. Quote its name: '~:*~(~A~)." plan)))
+    (style-warn-of-plan-text form "~(~A~) is a plan, not a variable. Quote its name: '~:*~(~A~)."
+                             plan)))
 
 (define-construct call-plan (plan &rest arguments)
   "Run PLAN, a plan procedure or its name, with ARGUMENTS as part of a plan; return its values."
@@ -92,9 +93,9 @@ tasks. A deeper call fails with class :TOO-DEEP. The limit stops endless recursi
 (defun lisp-function (name)
   (if (and (fboundp name) (not (macro-function name)))
       (fdefinition name)
-      (reject-call name)))
+      (reject-unknown-call name)))
 
-(defun reject-call (name)
+(defun reject-unknown-call (name)
   (let ((remedy (unknown-call-remedy name)))
     (when remedy (reject-use "There is no plan procedure or function ~A" remedy))
     (reject-name "plan procedure or function" name (procedures-to-offer)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(style-warn-of style-warn-of-own advice-on-call find-call fail-p may-return-p
+(export '(style-warn-of-form style-warn-of-plan-text advice-on-call find-call fail-p may-return-p
           endless-whenever-p))
 
 ;;; Plans and functions may be defined in any order, and in several files. So calls are looked at
@@ -19,13 +19,13 @@
 (defun warn-of-form (form control &rest arguments)
   (warn-at-form #'warn-of-definition form control arguments))
 
-(defun style-warn-of (form control &rest arguments)
+(defun style-warn-of-form (form control &rest arguments)
   "Warn of FORM as WARN-OF-STYLE does."
   (warn-at-form #'warn-of-style form control arguments))
 
-(defun style-warn-of-own (form control &rest arguments)
-  "Do as STYLE-WARN-OF if FORM belongs to the text of the plan itself."
-  (when (own-text-p form)
+(defun style-warn-of-plan-text (form control &rest arguments)
+  "Do as STYLE-WARN-OF-FORM if FORM belongs to the text of the plan itself."
+  (when (plan-text-p form)
     (warn-at-form #'warn-of-style form control arguments)))
 
 (defun known-operators (&optional (package *package*))
@@ -44,10 +44,10 @@
     (and nearest (plain-name nearest))))
 
 (defun check-arguments-fit (form lambda-list)
-  (let ((trouble (arguments-misfit-text (shape-of lambda-list) (rest form))))
+  (let ((trouble (arguments-misfit-text (lambda-list-shape lambda-list) (rest form))))
     (when trouble
       (warn-of-form form "~(~A~) takes ~A, not ~A."
-                    (first form) (shape-text lambda-list) trouble))))
+                    (first form) (lambda-list-text lambda-list) trouble))))
 
 (defun nisp-namesake (name)
   "Return the construct or function of NISP that has the same name as NAME, another symbol; or NIL."
@@ -64,7 +64,7 @@ construct of NISP. In packages that do not use NISP, WAIT-FOR is such a macro."
                (lisp-symbol-p name)
                (not (eq (find-package "COMMON-LISP") (symbol-package name)))
                (nisp-namesake name))
-      (style-warn-of form "~(~A~) is not the construct of plans, which belongs to NISP. Write ~
+      (style-warn-of-form form "~(~A~) is not the construct of plans, which belongs to NISP. Write ~
                            (in-package :ars-user), or nisp:~:*~(~A~)." (symbol-name name)))))
 
 (defgeneric advice-on-call (name)
@@ -86,15 +86,15 @@ plan procedure or function."
            (format nil "~(~S~); the package NISP has one. Write (in-package :ars-user), or let ~
                         your package use NISP." name)))))
 
-(defun warn-of-unknown (form)
+(defun warn-of-unknown-call (form)
   (let* ((name (first form)) (remedy (unknown-call-remedy name)))
-    (cond (remedy (style-warn-of form "there is no plan procedure or function ~A" remedy))
+    (cond (remedy (style-warn-of-form form "there is no plan procedure or function ~A" remedy))
           ((same-name-p name "TAG")
-           (style-warn-of form "a tag has a colon: (:tag name form...)."))
+           (style-warn-of-form form "a tag has a colon: (:tag name form...)."))
           (t
-           (style-warn-of form "there is no plan procedure or function ~(~A~).~@[ Did you ~
+           (style-warn-of-form form "there is no plan procedure or function ~(~A~).~@[ Did you ~
                                mean ~A?~]"
-                          name (nearest-operator name))))))
+                               name (nearest-operator name))))))
 
 (defun check-known-call (form)
   "Warn if the call FORM is wrong by the definitions known now."
@@ -103,9 +103,9 @@ plan procedure or function."
           ((macro-function name)
            (warn-of-form form "~(~A~) is a macro that is defined only after this call." name))
           ((known-function-p name nil)
-           (multiple-value-bind (arguments known) (function-arguments name)
+           (multiple-value-bind (arguments known) (function-argument-types name)
              (when known (check-arguments-fit form arguments))))
-          (t (warn-of-unknown form)))))
+          (t (warn-of-unknown-call form)))))
 
 (defun check-later (check form)
   "Call CHECK with FORM, at this place and in this package, at the end of the compilation unit."
@@ -153,7 +153,7 @@ names are checked at the end of the compilation unit."
   "Return a text of the mistake in the arguments of FORM, or in a list of options in FORM; or NIL.
 FORM calls a construct with LAMBDA-LIST. A mistake is a keyword that LAMBDA-LIST does not have, or
 another form in the place of a keyword or a list of options."
-  (let ((shape (shape-of lambda-list)))
+  (let ((shape (lambda-list-shape lambda-list)))
     (and (proper-list-p form)
          (or (and (consp (shape-keys shape))
                   (let ((rest (nthcdr (shape-fixed shape) (rest form))))
@@ -205,21 +205,22 @@ later, nor inside a call for which TEST returns :NOWHERE."
   "Warn if one of FORMS, a list of steps, is a WHENEVER that never ends and is not the last step."
   (let ((form (find-if #'endless-whenever-p (butlast forms))))
     (when (and form *definition*)
-      (style-warn-of form "the forms after whenever never run, because whenever goes on until a ~
+      (style-warn-of-form form
+                          "the forms after whenever never run, because whenever goes on until a ~
                            form in it calls (return). Put whenever and these forms into (par ...), ~
                            or use (with-policy (whenever ...) body...)."))))
 
 ;;; Variables.
 
-(defun check-use (variables where form)
+(defun warn-of-unused-bindings (variables where form)
   "Warn about each of VARIABLES, bound by FORM, that the list of forms WHERE does not mention."
   (when (has-source-location-p form)
     (dolist (variable variables)
       (when (and (symbol-package variable) (not (mentions-p variable where)))
-        (style-warn-of form "the variable ~(~A~) is never used. If this is intended, write ~
+        (style-warn-of-form form "the variable ~(~A~) is never used. If this is intended, write ~
                              (declare (ignore ~:*~(~A~)))." variable)))))
 
-(defun check-distinct (variables form)
+(defun check-distinct-variables (variables form)
   "Signal MALFORMED-DEFINITION if FORM binds one of VARIABLES twice."
   (let ((twice (loop for (variable . more) on variables
                      when (member variable more) return variable)))

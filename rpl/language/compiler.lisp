@@ -3,22 +3,22 @@
 (in-package :ars-magna.rpl.language)
 
 (export '(condition-lambda awaited-lambda value-lambda define-plan-form hoisted-code plan-code
-          refuse-code suspends-p))
+          leaf-code-or-reject suspends-p))
 
 ;;; Where the plan's own text says so, conditions read fluents by value and operators are lifted.
 ;;; What is written for a truth value must not be a vector of fluents.
 
-(defun own-operator-call-p (form environment names)
+(defun plan-operator-call-p (form environment names)
   (and (consp form)
-       (own-text-p form)
+       (plan-text-p form)
        (operator-in-p form names)
        (not (local-function-p (first form) environment))))
 
 (defun operand-form (form environment)
   "Return a form for the value of FORM, an argument of a lifted operator in a condition."
-  (cond ((own-operator-call-p form environment '("AND" "OR" "NOT" "NULL"))
+  (cond ((plan-operator-call-p form environment '("AND" "OR" "NOT" "NULL"))
          (condition-form form environment))
-        ((own-operator-call-p form environment *lifted-operators*)
+        ((plan-operator-call-p form environment *lifted-operators*)
          (list* (first form)
                 (loop for argument in (rest form) collect (operand-form argument environment))))
         ((constantp form environment) form)
@@ -31,10 +31,10 @@
                                                      collect (condition-form form environment)))
                                  form)))
     (check-condition form)
-    (cond ((own-operator-call-p form environment '("AND")) (conditions 'and))
-          ((own-operator-call-p form environment '("OR")) (conditions 'or))
-          ((own-operator-call-p form environment '("NOT" "NULL")) (conditions 'not))
-          ((own-operator-call-p form environment *lifted-operators*)
+    (cond ((plan-operator-call-p form environment '("AND")) (conditions 'and))
+          ((plan-operator-call-p form environment '("OR")) (conditions 'or))
+          ((plan-operator-call-p form environment '("NOT" "NULL")) (conditions 'not))
+          ((plan-operator-call-p form environment *lifted-operators*)
            (copy-source-location (operand-form form environment) form))
           ((constantp form environment) form)
           (t (copy-source-location `(truth-value ,form) form)))))
@@ -59,7 +59,7 @@
             ((is "LOOP") (if (plan-loop-p form)
                              (loop-meaning (rest form) environment)
                              (extended-loop-meaning form environment)))
-            ((operator-in-p form *lifted-operators*) `(lifting ,@form))
+            ((operator-in-p form *lifted-operators*) `(call-lifted ,@form))
             (t form)))))
 
 (defun ccase-meaning (form)
@@ -81,7 +81,7 @@
         `(loop (,end ,(condition-form (second forms) environment) (return)) ,@(cddr forms))
         `(loop ,@forms))))
 
-(defparameter *tests-in-loops*
+(defparameter *loop-test-keywords*
   '("WHILE" "UNTIL" "WHEN" "IF" "UNLESS" "ALWAYS" "NEVER" "THEREIS")
   "The keywords of LOOP that stand before a test.")
 
@@ -91,7 +91,7 @@
     (flet ((word-p (word words) (and (symbolp word) (member word words :test #'string=))))
       (cons (first form)
             (loop for part in (rest form)
-                  collect (if (shiftf test-p (and (word-p part *tests-in-loops*)
+                  collect (if (shiftf test-p (and (word-p part *loop-test-keywords*)
                                                   (not (word-p last '("FOR" "AS" "WITH" "INTO")))))
                               (condition-form part environment)
                               part)
@@ -99,11 +99,11 @@
 
 (defun leaf-meaning (form environment)
   (cond ((global-symbol-macro-p form environment)
-         (note-own-text (macroexpand-1 form environment)))
-        ((not (and (consp form) (symbolp (first form)) (own-text-p form))) form)
-        ((plan-in-leaf-p form) (values form t))
-        ((construct-behind form) (reject-in-lisp (construct-behind form)))
-        (t (check-counting form environment)
+         (note-plan-text (macroexpand-1 form environment)))
+        ((not (and (consp form) (symbolp (first form)) (plan-text-p form))) form)
+        ((plan-making-form-p form) (values form t))
+        ((represented-construct form) (reject-in-lisp (represented-construct form)))
+        (t (check-fluent-increment form environment)
            (check-assignments form environment)
            (check-fluent-arguments form environment)
            (warn-of-namesake form)
@@ -113,7 +113,7 @@
              (if (and (eq meaning form)
                       (macro-function (first form) environment)
                       (not (lisp-symbol-p (first form))))
-                 (note-own-text (expand-in-walk form environment))
+                 (note-plan-text (expand-in-walk form environment))
                  meaning)))))
 
 (defun as-lisp (form scope)
@@ -125,7 +125,7 @@
 (defun condition-lambda (form scope)
   "Return a lambda expression that takes an environment and returns the fluent or value of FORM."
   (check-condition form)
-  (leaf-lambda `(one-fluent ,(as-lisp form scope)) scope))
+  (leaf-lambda `(checked-condition ,(as-lisp form scope)) scope))
 
 (defun awaited-lambda (condition form scope)
   "Do as CONDITION-LAMBDA for CONDITION, which FORM waits for, and warn of mistakes in CONDITION."
@@ -136,33 +136,34 @@
   "Return a lambda expression that returns the first value of FORM, for an environment."
   (leaf-lambda (as-lisp form scope) scope))
 
-(defun bundle-up (&optional value &rest more)
+(defun bundle-several-values (&optional value &rest more)
   (if more (make-bundle (cons value more)) value))
 
 (defun leaf-code (form scope)
   (let ((meaning (as-lisp form scope)))
     `(make-leaf :form ',(form-as-written form)
                 :function ,(leaf-lambda (if (and (scope-several scope) (consp form))
-                                            `(multiple-value-call #'bundle-up ,meaning)
+                                            `(multiple-value-call #'bundle-several-values ,meaning)
                                             meaning)
                                         scope))))
 
 ;;; Functions named X-CODE return a form that builds nodes. It is run when the plan is loaded.
 
-(defun element-names (lambda-list)
+(defun destructuring-variables (lambda-list)
   "Return a list of the variables of LAMBDA-LIST, a destructuring lambda list without defaults."
   (cond ((null lambda-list) '())
         ((atom lambda-list)
          (unless (member lambda-list lambda-list-keywords) (list lambda-list)))
-        (t (append (element-names (car lambda-list)) (element-names (cdr lambda-list))))))
+        (t (append (destructuring-variables (car lambda-list))
+                   (destructuring-variables (cdr lambda-list))))))
 
 (defmacro define-plan-form (name suspends lambda-list (form scope) &body body)
   "Define the meaning in plans of the operator with the name NAME, a string or a symbol. BODY
 returns the code for FORM in SCOPE; the variables of LAMBDA-LIST are bound to the arguments of FORM.
 SUSPENDS says whether the operator makes a task wait: see SUSPENSION."
-  (let ((names (element-names lambda-list)))
+  (let ((names (destructuring-variables lambda-list)))
     (with-gensyms (fits values)
-      `(setf (gethash (operator-key ',name) *plan-forms*)
+      `(setf (gethash (plan-form-key ',name) *plan-forms*)
              (make-plan-form
               ,(string name) ,suspends
               (lambda (,form ,scope)
@@ -181,7 +182,7 @@ SUSPENDS says whether the operator makes a task wait: see SUSPENSION."
                    (format nil "(~A~{ ~A~})~@[, not ~A~]" (operator-text form) lambda-list
                            (argument-mistake-text form lambda-list)))))
 
-(defun refuse-code (form scope &optional (container form))
+(defun leaf-code-or-reject (form scope &optional (container form))
   "Return code for FORM as a leaf. Signal MISPLACED-SUSPENSION if FORM, in CONTAINER, would wait."
   (multiple-value-bind (suspends reason) (suspension form scope)
     (if (eq suspends :must)
@@ -196,10 +197,10 @@ SUSPENDS says whether the operator makes a task wait: see SUSPENSION."
 (defun binds-fluents-p (form scope)
   "True if FORM, in plan text, is a LET that binds fluents. Leaves do not record such bindings."
   (and (consp form)
-       (own-text-p form)
+       (plan-text-p form)
        (operator-in-p form '("LET" "LET*"))
        (proper-list-p (second form))
-       (bound-to-fluents (second form) (cddr form) scope (operator-in-p form '("LET*")))))
+       (variables-bound-to-fluents (second form) (cddr form) scope (operator-in-p form '("LET*")))))
 
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 
@@ -226,25 +227,25 @@ bound to variables before FORM. So are all elements to their left, to keep the o
   "Return code for FORM, a call of an operator without a special meaning in plans."
   (cond ((some (lambda (argument) (suspends-p argument scope)) (rest form))
          (hoisted-code form scope))
-        ((call-suspends form scope (scope-environment scope)) (call-code form scope))
+        ((call-suspension form scope (scope-environment scope)) (call-code form scope))
         (t (leaf-code form scope))))
 
 (defun plan-code (form scope)
   "Return code that builds the node for FORM."
   (let ((*current-source-form* (if (has-source-location-p form) form *current-source-form*)))
     (copy-source-location (if (or (suspends-p form scope) (binds-fluents-p form scope))
-                    (naming-code (waiting-code form scope) scope)
+                    (node-naming-code (waiting-code form scope) scope)
                     (leaf-code form scope))
                 form)))
 
-(defun naming-code (code scope)
+(defun node-naming-code (code scope)
   "Return CODE, extended so that its node has the names of the variables in SCOPE."
   (let ((names (names-by-level scope)))
     (if (some #'identity names)
-        `(name-variables ,code ',names)
+        `(set-node-names ,code ',names)
         code)))
 
-(defun name-variables (node names)
+(defun set-node-names (node names)
   (unless (leaf-p node)
     (setf (node-names node) names))
   node)
@@ -253,17 +254,17 @@ bound to variables before FORM. So are all elements to their left, to keep the o
   (let* ((environment (scope-environment scope))
          (plan-form (find-plan-form form environment)))
     (cond ((symbolp form) (expansion-code form scope))
-          ((construct-behind form) (plan-code (construct-behind form) scope))
+          ((represented-construct form) (plan-code (represented-construct form) scope))
           (plan-form (funcall (plan-form-compiler plan-form) form scope))
-          ((not (symbolp (first form))) (refuse-code form scope))
+          ((not (symbolp (first form))) (leaf-code-or-reject form scope))
           ((assoc (first form) (scope-procedures scope)) (function-form-code form scope))
           ((local-function-p (first form) environment)
            (if (macro-function (first form) environment)
                (expansion-code form scope)
                (function-form-code form scope)))
-          ((advice-for-form form) (refuse-code form scope))
+          ((advice-for-form form) (leaf-code-or-reject form scope))
           ((macro-function (first form) environment) (expansion-code form scope))
-          ((special-operator-p (first form)) (refuse-code form scope))
+          ((special-operator-p (first form)) (leaf-code-or-reject form scope))
           ((operator-in-p form *waking-functions*)
            (if (some (lambda (argument) (suspends-p argument scope)) (rest form))
                (hoisted-code form scope)
@@ -274,5 +275,5 @@ bound to variables before FORM. So are all elements to their left, to keep the o
   (let ((expansion (macroexpand-1 form (scope-environment scope))))
     (if (and (consp form) (lisp-symbol-p (first form)))
         (note-written-as expansion form)
-        (note-own-text expansion))
+        (note-plan-text expansion))
     (plan-code expansion scope)))

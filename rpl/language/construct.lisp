@@ -8,7 +8,7 @@
 ;;; A frame is always in one of the states of its node. States have names. Only this file and
 ;;; FRAME-STATE use the number that stands for a state, in the frame's counter.
 
-(defun clause (key clauses)
+(defun clause-rest (key clauses)
   "Return the rest of the clause (KEY ...) in CLAUSES, and true if CLAUSES has such a clause."
   (let ((clause (assoc key clauses)))
     (values (rest clause) (and clause t))))
@@ -17,7 +17,7 @@
   "Signal MALFORMED-DEFINITION unless each of CLAUSES starts with one of the keywords ALLOWED."
   (dolist (clause clauses)
     (unless (member (first (ensure-list clause)) allowed)
-      (reject-clause (title definer name) clause
+      (reject-clause (definition-title definer name) clause
                      (format nil "a list that starts with one of ~{~(~S~)~^, ~}" allowed)))))
 
 (defun state-number (name names)
@@ -26,8 +26,8 @@
 
 (defun with-node-form (name clauses forms)
   "Return a form that runs FORMS with the parts and states that CLAUSES give nodes of type NAME."
-  (let ((states (mapcar #'first (clause :steps clauses))))
-    `(symbol-macrolet (,@(loop for part in (clause :parts clauses)
+  (let ((states (mapcar #'first (clause-rest :steps clauses))))
+    `(symbol-macrolet (,@(loop for part in (clause-rest :parts clauses)
                                collect `(,(first part) (,(symbolicate name '- (first part)) node)))
                        (environment (frame-environment frame))
                        (memory (frame-data frame)))
@@ -52,25 +52,26 @@
                     for number from 0
                     collect `(,number (,function)))))))))
 
-(defun node-function (function name clauses variables forms)
+(defun node-defun-form (function name clauses variables forms)
   `(defun ,function (node task frame ,@variables)
-     (declare ,@(when (nth-value 1 (clause :hot clauses)) (list *hot*))
+     (declare ,@(when (nth-value 1 (clause-rest :hot clauses)) (list *hot*))
               (type ,name node) (type task task) (type frame frame)
               (ignorable node task frame ,@variables))
      ,(with-node-form name clauses forms)))
 
-(defun node-functions (name clauses)
+(defun node-function-specs (name clauses)
   "Return lists (slot function definition) for the slots that CLAUSES give a node of type NAME."
   (flet ((row (slot prefix variables forms)
            (when forms
              (let ((function (symbolicate prefix '- name)))
                (list (list slot function
-                           (node-function function name clauses variables forms)))))))
+                           (node-defun-form function name clauses variables forms)))))))
     (append (row 'step 'step '(value)
-                 (or (clause :step clauses)
-                     (and (clause :steps clauses) (state-forms (clause :steps clauses)))))
-            (row 'unwind 'unwind '(signal) (clause :unwind clauses))
-            (row 'child-ended 'child-ended '(child how result) (clause :child-ended clauses)))))
+                 (or (clause-rest :step clauses)
+                     (and (clause-rest :steps clauses) (state-forms (clause-rest :steps clauses)))))
+            (row 'unwind 'unwind '(signal) (clause-rest :unwind clauses))
+            (row 'child-ended 'child-ended '(child how result)
+                 (clause-rest :child-ended clauses)))))
 
 (defmacro define-expression (name documentation &body clauses)
   "Define NAME as a type of nodes, a structure. DOCUMENTATION says what the nodes do. CLAUSES:
@@ -91,18 +92,18 @@ the frame is in that state.
 the functions for speed, because a profile has shown that this matters."
   (check-clauses "define-expression" name clauses
                  '(:parts :steps :step :unwind :child-ended :hot))
-  (let ((functions (node-functions name clauses)))
+  (let ((functions (node-function-specs name clauses)))
     `(progn
        (declaim (ftype function ,@(mapcar #'second functions)))
        (defstruct (,name (:include node
                           (states ,(map 'vector (lambda (state) (make-keyword (first state)))
-                                        (clause :steps clauses)))
+                                        (clause-rest :steps clauses)))
                           ,@(loop for (slot function) in functions
                                   collect `(,slot #',function)))
                          (:copier nil))
          ,documentation
-         ,@(loop for (part type) in (clause :parts clauses)
-                 collect `(,part (required-slot ',part) :type ,type)))
+         ,@(loop for (part type) in (clause-rest :parts clauses)
+                 collect `(,part (reject-missing-slot ',part) :type ,type)))
        ,@(mapcar #'third functions)
        ',name)))
 
@@ -124,9 +125,9 @@ the functions for speed, because a profile has shown that this matters."
   "Return the names of all constructs defined by DEFINE-CONSTRUCT, in order of definition."
   (reverse (mapcar #'first *constructs*)))
 
-(defun all-clauses (clauses)
+(defun clauses-with-inherited (clauses)
   "Return CLAUSES and, if CLAUSES has (:like construct), the clauses of that construct."
-  (let ((like (first (clause :like clauses))))
+  (let ((like (first (clause-rest :like clauses))))
     (if like
         (append clauses (remove :manual (or (rest (assoc like *constructs*))
                                             (reject-name "construct" like (all-constructs)))
@@ -135,17 +136,17 @@ the functions for speed, because a profile has shown that this matters."
 
 ;;; Values that the task must wait for before the construct begins.
 
-(defmacro hoisting (arguments form scope &body body)
+(defmacro with-hoisted-arguments (arguments form scope &body body)
   "Run BODY, which returns the code for FORM in SCOPE. ARGUMENTS are parts of FORM. If an argument
 makes its task wait, bind it, and all arguments to its left, to variables before FORM."
   (if (null arguments)
       `(progn ,@body)
-      `(call-hoisting (list* ,@(if (eq '&rest (first (last arguments 2)))
-                                   (append (butlast arguments 2) (last arguments))
-                                   (append arguments '('()))))
-                      ,form ,scope (lambda () ,@body))))
+      `(call-with-hoisted-arguments (list* ,@(if (eq '&rest (first (last arguments 2)))
+                                                 (append (butlast arguments 2) (last arguments))
+                                                 (append arguments '('()))))
+                                    ,form ,scope (lambda () ,@body))))
 
-(defun call-hoisting (arguments form scope coder)
+(defun call-with-hoisted-arguments (arguments form scope coder)
   (let* ((last (position-if (lambda (argument) (suspends-p argument scope)) arguments
                             :from-end t))
          (symbol (and last (find-if (lambda (argument)
@@ -161,7 +162,7 @@ makes its task wait, bind it, and all arguments to its left, to variables before
 (defun with-symbol-expanded (symbol form scope)
   "Return FORM with the expansion of SYMBOL, a symbol macro that is an argument of FORM. Only the
 first occurrence is expanded, because arguments come before bodies."
-  (let ((expansion (note-own-text (macroexpand-1 symbol (scope-environment scope)))) (done-p nil))
+  (let ((expansion (note-plan-text (macroexpand-1 symbol (scope-environment scope)))) (done-p nil))
     (labels ((expanded (part)
                (cond (done-p part)
                      ((eq part symbol) (setf done-p t) expansion)
@@ -184,29 +185,29 @@ first occurrence is expanded, because arguments come before bodies."
   (if in-lisp
       (user-macro-form name `(&whole form ,@lambda-list) (cons name lambda-list)
                        `(,documentation
-                         (declare (ignorable ,@(element-names lambda-list)))
+                         (declare (ignorable ,@(destructuring-variables lambda-list)))
                          ,in-lisp))
       ;; Outside of plans it does not matter whether the form fits.
       `(defmacro ,name (&whole form &rest arguments)
          ,documentation
          (declare (ignore arguments))
-         (list 'in-plans-only form))))
+         (list 'plan-only-form form))))
 
 (defun construct-code-form (node clauses)
-  (let ((code (first (clause :code clauses))))
+  (let ((code (first (clause-rest :code clauses))))
     `(flet ((build (&optional (scope scope))
               (declare (ignorable scope))
               (list ',(symbolicate 'make- node)
                     :form (list 'quote (form-as-written form))
-                    ,@(loop for (part nil code) in (clause :parts clauses)
+                    ,@(loop for (part nil code) in (clause-rest :parts clauses)
                             append (list (make-keyword part) code)))))
        (declare (ignorable #'build))
        ,(or code '(build)))))
 
-(defun plan-form-definition (name node lambda-list clauses)
-  (multiple-value-bind (waits given) (clause :waits clauses)
+(defun define-plan-form-call (name node lambda-list clauses)
+  (multiple-value-bind (waits given) (clause-rest :waits clauses)
     `(define-plan-form ,name ,(if given (first waits) :must) ,lambda-list (form scope)
-       (hoisting ,(clause :arguments clauses) form scope
+       (with-hoisted-arguments ,(clause-rest :arguments clauses) form scope
          ,(construct-code-form node clauses)))))
 
 (defmacro define-construct (name lambda-list documentation &body clauses)
@@ -232,15 +233,15 @@ construct): take missing clauses from that construct, whose lambda list must be 
                  '(:manual :command :waits :arguments :parts :code :steps :step :unwind
                    :child-ended :hot :in-lisp :like))
   (let* ((node (symbolicate name '-node))
-         (all (all-clauses clauses))
-         (node-p (or (clause :steps all) (clause :step all))))
+         (all (clauses-with-inherited clauses))
+         (node-p (or (clause-rest :steps all) (clause-rest :step all))))
     `(progn
        (eval-when (:compile-toplevel :load-toplevel :execute)
          (export ',name)
          (note-construct ',name ',all))
        ,@(unless (assoc :command clauses)
            `((,(if (assoc :manual clauses) 'public 'addition) ,name)))
-       ,(stub-form name lambda-list documentation (first (clause :in-lisp all)))
+       ,(stub-form name lambda-list documentation (first (clause-rest :in-lisp all)))
        (show-lambda-list ',name ',lambda-list)
        ,@(when node-p
            `((define-expression ,node ,(format nil "The node of ~A." name)
@@ -248,6 +249,6 @@ construct): take missing clauses from that construct, whose lambda list must be 
                        when (member (first clause)
                                     '(:parts :steps :step :unwind :child-ended :hot))
                          collect clause))))
-       ,@(when (or node-p (clause :code all))
-           `(,(plan-form-definition name node lambda-list all)))
+       ,@(when (or node-p (clause-rest :code all))
+           `(,(define-plan-form-call name node lambda-list all)))
        ',name)))

@@ -4,7 +4,7 @@
 
 (export '(split-documentation variable-of))
 
-(defun procedure-parts (parameters environment)
+(defun procedure-scope-and-entry (parameters environment)
   "Return the scope of a procedure's body, and the lambda expression for the procedure's entry."
   (let ((scope (make-scope :environment environment))
         (variables (lambda-list-variables parameters)))
@@ -19,18 +19,18 @@
       (values body nil)))
 
 (defun procedure-form (name parameters body environment)
-  (let* ((definition (title "def-interp-proc" name))
-         (parameters (plain-parameters parameters (list* name parameters body) environment
-                                       definition))
+  (let* ((definition (definition-title "def-interp-proc" name))
+         (parameters (untyped-parameters parameters (list* name parameters body) environment
+                                         definition))
          (form (list* name parameters body)))
     (declare-procedure name parameters)
-    (check-use (lambda-list-variables parameters)
-               (list* (remove-if #'symbolp parameters) body)
-               (if *definition* (defining-form *definition*) form))
-    (with-own-text (form)
+    (warn-of-unused-bindings (lambda-list-variables parameters)
+                             (list* (remove-if #'symbolp parameters) body)
+                             (if *definition* (defining-form *definition*) form))
+    (with-plan-text (form)
       (warn-of-text-mistakes body)
       (multiple-value-bind (body documentation) (split-documentation body)
-        (multiple-value-bind (scope entry) (procedure-parts parameters environment)
+        (multiple-value-bind (scope entry) (procedure-scope-and-entry parameters environment)
           `(progn
              (eval-when (:compile-toplevel :load-toplevel :execute)
                (declare-procedure ',name ',parameters)
@@ -50,20 +50,21 @@
 hyphen and a type may follow each variable. BODY is plan text and may start with a documentation
 string. The value of the procedure is that of its last form. A new definition takes effect at the
 next call, also in running plans (manual D.2)."
-  (check-plan-name (title "def-interp-proc" name) name)
+  (check-plan-name (definition-title "def-interp-proc" name) name)
   (call-with-definition form (lambda () (procedure-form name parameters body environment))))
 
 (addition interp-lambda)
 (define-user-macro interp-lambda ((&rest parameters) &body body &environment environment)
   "Return a nameless plan procedure. PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees the
 variables around INTERP-LAMBDA, not blocks, tags and local plans. Run the procedure by CALL-PLAN."
-  (let ((parameters (plain-parameters parameters (list* 'interp-lambda parameters body) environment
-                                      (if *definition* (text-title) "interp-lambda")))
+  (let ((parameters (untyped-parameters parameters (list* 'interp-lambda parameters body)
+                                        environment
+                                        (if *definition* (text-title) "interp-lambda")))
         (form (list* 'interp-lambda parameters body))
         (inside-p (and *conses-of-plan-text* t)))
-    (with-own-text (form)
+    (with-plan-text (form)
       (unless inside-p (warn-of-text-mistakes body))
-      (multiple-value-bind (scope entry) (procedure-parts parameters environment)
+      (multiple-value-bind (scope entry) (procedure-scope-and-entry parameters environment)
         `(anonymous-procedure ',parameters ,entry
                               ,(procedure-body-code nil form body scope)
                               ',form)))))
@@ -120,7 +121,7 @@ anything. The second value is a list of (variable word) for each word that must 
 
 (defun check-pattern (name pattern)
   (when (larger-than-p pattern *largest-pattern*)
-    (reject-clause (title "def-interp-macro" name) (abridged pattern)
+    (reject-clause (definition-title "def-interp-macro" name) (abridged pattern)
                    (format nil "a pattern of at most ~D words and variables, of which the last may ~
                                 be . ?x for all the rest" *largest-pattern*))))
 
@@ -129,7 +130,7 @@ anything. The second value is a list of (variable word) for each word that must 
   "Define NAME as a macro for plans. ?x in PATTERN stands for any form, to which the variable x is
 bound while TEMPLATE is evaluated. A pattern may end in a dot and ?x for all remaining forms. The
 value of TEMPLATE is the plan text. A documentation string may come before TEMPLATE (manual D.8)."
-  (check-plan-name (title "def-interp-macro" name) name)
+  (check-plan-name (definition-title "def-interp-macro" name) name)
   (check-pattern name pattern)
   (multiple-value-bind (parameters literals) (pattern-parameters pattern)
     (multiple-value-bind (body documentation) (split-documentation template)
@@ -138,14 +139,15 @@ value of TEMPLATE is the plan text. A documentation string may come before TEMPL
            ,(user-macro-form
              name `(&whole ,form ,@parameters) (cons name pattern)
              `(,@(when documentation (list documentation))
-               (declare (ignorable ,@(remove-if #'symbol-package (element-names parameters))))
+               (declare (ignorable ,@(remove-if #'symbol-package
+                                                (destructuring-variables parameters))))
                ,@(loop for (variable word) in literals
                        collect `(check-literal ',name ,form ,variable ',word))
                ,@body))
-           (show-lambda-list ',name ',(pattern-to-show parameters literals))
+           (show-lambda-list ',name ',(lambda-list-for-display parameters literals))
            ',name)))))
 
-(defun pattern-to-show (parameters literals)
+(defun lambda-list-for-display (parameters literals)
   "Return PARAMETERS as a lambda list for display, with the words of LITERALS. A variable BODY or
 FORMS that takes all remaining forms is shown after &BODY."
   (cond ((null parameters) '())
@@ -155,5 +157,5 @@ FORMS that takes all remaining forms is shown after &BODY."
         ((and (eq '&rest (first parameters))
               (member (second parameters) '("BODY" "FORMS") :test #'string=))
          (list '&body (second parameters)))
-        (t (cons (pattern-to-show (first parameters) literals)
-                 (pattern-to-show (rest parameters) literals)))))
+        (t (cons (lambda-list-for-display (first parameters) literals)
+                 (lambda-list-for-display (rest parameters) literals)))))

@@ -12,9 +12,9 @@
   '("CREATE-FLUENT" "STATE" "TASK-STATUS" "FL-PULSED" "FL-VALUE-CHANGED")
   "Names of functions that always return a fluent.")
 
-(defun vector-variable (form)
+(defun form-vector-kind (form)
   "Return the kind of part for which FORM is the variable of a vector of fluents; or NIL."
-  (and (symbolp form) (known-vector-variable-p form)))
+  (and (symbolp form) (vector-variable-kind form)))
 
 (defun known-fluent-p (form environment)
   (cond ((null form) nil)
@@ -24,15 +24,15 @@
         ((atom form) nil)
         ((and (symbolp (first form))
               (member (first form) '("VREF" "AREF" "SVREF" "ELT") :test #'string=)
-              (vector-variable (second form))))
+              (form-vector-kind (second form))))
         ((operator-in-p form *makers-of-fluents*))
-        ((and (own-text-p form) (operator-in-p form *lifted-operators*))
+        ((and (plan-text-p form) (operator-in-p form *lifted-operators*))
          (some (lambda (argument) (known-fluent-p argument environment)) (rest form)))))
 
 ;;; Conditions.
 
 (defun check-condition (form)
-  (let ((kind (vector-variable form)))
+  (let ((kind (form-vector-kind form)))
     (when kind
       (reject-clause (text-title) form
                      (format nil "one of the fluents in that vector: (vref ~(~A~) ~A)"
@@ -40,7 +40,7 @@
 
 ;;; Waits for what cannot change.
 
-(defun known-value-p (form environment)
+(defun known-non-fluent-p (form environment)
   "True if FORM, in ENVIRONMENT, is known to return a value that is no fluent. Such forms are
 constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone."
   (cond ((constantp form) t)
@@ -48,9 +48,9 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
         ((local-function-p (first form) environment) nil)
         ((operator-in-p form '("FLUENT-VALUE")) t)
         ((operator-in-p form (list* "AND" "OR" *lifted-operators*))
-         (every (lambda (argument) (known-value-p argument environment)) (rest form)))))
+         (every (lambda (argument) (known-non-fluent-p argument environment)) (rest form)))))
 
-(defun as-fluents (form)
+(defun strip-fluent-value (form)
   "Return FORM without calls of FLUENT-VALUE and quotes, so that it returns a fluent, not a value."
   (cond ((and (consp form) (or (operator-in-p form '("FLUENT-VALUE")) (eq 'quote (first form))))
          (second form))
@@ -58,7 +58,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
          (cons (first form)
                (loop for argument in (rest form)
                      collect (if (and (consp argument) (not (eq 'quote (first argument))))
-                                 (as-fluents argument)
+                                 (strip-fluent-value argument)
                                  argument))))
         (t form)))
 
@@ -66,7 +66,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
   "True if FORM is known to return the value of a fluent, or is the quoted name of a fluent."
   (typecase form
     ((cons (eql quote)) (known-fluent-p (second form) environment))
-    (cons (and (known-value-p form environment)
+    (cons (and (known-non-fluent-p form environment)
                (mentions-p 'fluent-value form)))))
 
 (defun advice-on-awaited (condition form environment)
@@ -74,7 +74,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
     (cond ((mistaken-for-fluent-p condition environment)
            (format nil "~(~A~) needs a fluent, and ~S is a value, which never changes. Write ~
                         (~(~A~) ~S~:[~; ...~])."
-                   name condition name (as-fluents condition) (cddr form)))
+                   name condition name (strip-fluent-value condition) (cddr form)))
           ((and (consp condition) (operator-in-p condition '("TASK-STATUS")))
            (format nil "the status of a task is always true, so ~(~A~) does not wait. Compare it: ~
                         (~(~:*~A~) (eq ~S :succeeded)~:[~; ...~])." name condition (cddr form)))
@@ -86,7 +86,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
                    name condition (and (realp condition) (plusp condition) condition))))))
 
 (defun check-awaited (condition form scope)
-  (let ((advice (and (own-text-p form)
+  (let ((advice (and (plan-text-p form)
                      (let ((*print-case* :downcase) (*print-pretty* t)
                            (*print-right-margin* 10000))
                        (advice-on-awaited condition form (scope-environment scope))))))
@@ -102,7 +102,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
 (defun argument-types (name count)
   "Return a list of the types of the first arguments of the function NAME, at most COUNT types."
   (let ((types '()))
-    (loop for (part . more) on (function-arguments name)
+    (loop for (part . more) on (function-argument-types name)
           while (< (length types) count)
           do (case part
                (&optional)
@@ -132,7 +132,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
        (known-fluent-p (second form) environment)
        (second form)))
 
-(defun check-counting (form environment)
+(defun check-fluent-increment (form environment)
   (when (and (operator-in-p form '("INCF" "DECF"))
              (typep form '(cons t (cons t (or null (cons t null)))))
              (known-fluent-p (second form) environment))
@@ -148,7 +148,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
     (loop for (place value) on (rest form) by #'cddr
           when (and (symbolp place)
                     (known-fluent-p place environment)
-                    (known-value-p value environment))
+                    (known-non-fluent-p value environment))
             do (warn-of-form form "~(~A~) puts ~S in the place of the fluent ~S, which is then ~
                                    lost. Write ~S."
                              (first form) value place `(set-value ,place ,value)))))
@@ -185,7 +185,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone.
                  (return-from assigned-p t)))
              forms))
 
-(defun bound-to-fluents (bindings body scope sequential)
+(defun variables-bound-to-fluents (bindings body scope sequential)
   "Return the variables that BINDINGS, of a LET or LET*, bind to fluents and BODY does not assign."
   (let ((*fluents-here* (scope-fluents scope)) (found '()))
     (loop for (variable value) in (remove-if #'atom bindings)

@@ -20,7 +20,7 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
   (map-calls (lambda (call)
                (dolist (rule (getf *mistakes* :text))
                  (let ((text (call-rule rule call)))
-                   (when text (style-warn-of-own call "~A" text)))))
+                   (when text (style-warn-of-plan-text call "~A" text)))))
              form))
 
 (defun warn-of-leaf-mistakes (form)
@@ -28,7 +28,7 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
   (when *definition*
     (dolist (rule (getf *mistakes* :leaf))
       (let ((call (find-call rule (list form))))
-        (when call (style-warn-of call "~A" (call-rule rule call)))))))
+        (when call (style-warn-of-form call "~A" (call-rule rule call)))))))
 
 (defun call-rule (rule form)
   (let ((*print-case* :downcase) (*print-pretty* nil))
@@ -131,7 +131,7 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
           ((operator-in-p form '("OUT")) (rest form))
           ((and (fboundp name) (not (macro-function name)) (not (special-operator-p name)))
            (rest form))
-          (t (append (values-used-in form) (tests-in-loop form))))))
+          (t (append (value-forms-in form) (tests-in-loop form))))))
 
 (define-mistake command-used :text (form)
   "FORM uses the value of a command of the robot."
@@ -177,7 +177,7 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
 
 ;;; Operators that let time pass, but not for plans.
 
-(defparameter *program-waits*
+(defparameter *program-wait-advice*
   '(("SLEEP" . "sleep stops all plans for seconds of real time, in which perhaps no tick passes.")
     ("RUN-TICKS" . "run-ticks is for programs: it cannot be called inside of a tick or plan.")
     ("STEP-TICKS" . "step-ticks is for programs: it cannot be called inside of a tick or plan.")
@@ -187,11 +187,11 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
 
 (define-mistake program-wait :leaf (form)
   "FORM lets time pass in programs, but not in plans."
-  (when (operator-in-p form (mapcar #'car *program-waits*))
+  (when (operator-in-p form (mapcar #'car *program-wait-advice*))
     (destructuring-bind (name &optional (time 'ticks) &rest options) form
       (declare (ignore options))
       (format nil "~A In a plan write ~A."
-              (cdr (assoc (symbol-name name) *program-waits* :test #'string=))
+              (cdr (assoc (symbol-name name) *program-wait-advice* :test #'string=))
               (cond ((string= "RUN-UNTIL" name) "(wait-until condition)")
                     ((string= "AWAIT-IDLE" name) "(wait-for fluent), such as robot-stopped*")
                     ((string= "SLEEP" name) (format nil "(wait-time ~S :unit :seconds)" time))
@@ -199,7 +199,7 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
 
 ;;; In Lisp code outside of plans a fluent is an object like any other.
 
-(defun read-fluent (form)
+(defun fluent-read-in-form (form)
   "Return the variable of the fluent whose value FORM reads, or NIL."
   (when (and (consp form) (consp (cdr form)) (eq 'fluent-value (first form)))
     (let ((fluent (second form)))
@@ -216,8 +216,8 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
         ((and (typep form '(cons symbol (cons t null)))
               (member (first form) '("NOT" "NULL") :test #'string=))
          (doubtful-test-text (second form)))
-        ((known-pulse-p (read-fluent form))
+        ((known-pulse-p (fluent-read-in-form form))
          (format nil "~(~S~) is never true: the fluent is pulsed, which takes no time. In plans ~
                       write (wait-for ~(~A~)); in Lisp write (await-idle), or (run-until (idle-p)) ~
                       in a headless run."
-                 form (read-fluent form)))))
+                 form (fluent-read-in-form form)))))

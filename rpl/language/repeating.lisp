@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(block-code make-leave each-body-code give-way item-list))
+(export '(block-code make-leave item-loop-body-code give-way item-list))
 
 ;;; To leave is to send an ESCAPE up. Where it crosses the border of a task, that task ends, its
 ;;; siblings evaporate, and the escape goes on in the task around them.
@@ -52,7 +52,7 @@ source of the block. The code has a node for the block only if some form leaves 
   (let ((target (cdr (assoc name (scope-blocks scope)))))
     (if target
         `(make-leave :form ',(form-as-written form) :target ,target
-                     :result ,(plan-code result (several-scope scope)))
+                     :result ,(plan-code result (multiple-values-scope scope)))
         (reject-name "block" name (mapcar #'car (scope-blocks scope))))))
 
 ;;; Tags.
@@ -83,7 +83,7 @@ source of the block. The code has a node for the block only if some form leaves 
                        for part in parts
                        if (atom part) collect (list* part target place)
                        else do (incf place)))
-           (inner (inner-scope (single-scope scope) :tags (append tags (scope-tags scope)))))
+           (inner (inner-scope (single-value-scope scope) :tags (append tags (scope-tags scope)))))
       `(let ((,target (make-tag-body :form ',(form-as-written form) :parts (vector))))
          (setf (tag-body-parts ,target)
                (vector ,@(loop for part in forms collect (plan-code part inner))))
@@ -105,7 +105,7 @@ source of the block. The code has a node for the block only if some form leaves 
 
 (defun repetition-count (count)
   (let ((count (fluent-value count)))
-    (check-argument n-times count (quantity-p count)
+    (check-argument n-times count (bounded-number-p count)
                     "a number of turns, from -1e15 to 1e15, as in (n-times count form...)")
     count))
 
@@ -134,7 +134,7 @@ TIMES returns the largest number of turns, or NIL for no limit. A frame counts d
   "FORMS follow LOOP. Return the condition that ends the loop, or NIL, and the body of the loop."
   (cond ((starts-with-test-p forms "UNTIL") (values (second forms) (cddr forms)))
         ((starts-with-test-p forms "WHILE")
-         (values (note-own-text `(not ,(second forms))) (cddr forms)))
+         (values (note-plan-text `(not ,(second forms))) (cddr forms)))
         (t (values nil forms))))
 
 (defun loop-code (form count forms scope)
@@ -143,7 +143,7 @@ number of turns, or NIL if there is no limit."
   (multiple-value-bind (test body) (split-loop-test forms)
     (if (suspends-p test scope)
         (loop-code form count
-                   (list* (note-own-text `(when ,test (return-from nil nil))) body) scope)
+                   (list* (note-plan-text `(when ,test (return-from nil nil))) body) scope)
         (block-code nil form scope
                     (lambda (scope)
                       `(make-turns :form ',(form-as-written form)
@@ -151,7 +151,7 @@ number of turns, or NIL if there is no limit."
                                                           test (scope-environment scope))
                                                          scope)
                                    :times ,(value-lambda count scope)
-                                   :body ,(body-code body (single-scope scope))))))))
+                                   :body ,(body-code body (single-value-scope scope))))))))
 
 (define-plan-form "LOOP" :may (&rest forms) (form scope)
   (loop-code form nil forms scope))
@@ -160,7 +160,7 @@ number of turns, or NIL if there is no limit."
   "Run BODY in a plan COUNT times, one turn after the other. BODY may start with UNTIL or WHILE and
 a test, which is evaluated before each turn. COUNT is a number up to 1e15. Return NIL."
   (:arguments count)
-  (:code (loop-code form (note-own-text `(repetition-count ,count)) body scope)))
+  (:code (loop-code form (note-plan-text `(repetition-count ,count)) body scope)))
 
 ;;; Over the elements of a list, and numbers.
 
@@ -171,7 +171,7 @@ unless SEQUENCE is a vector or a proper list."
     (reject-argument operator 'sequence sequence "a vector, or a proper list"))
   (coerce sequence 'list))
 
-(defun whole-list (operator list)
+(defun checked-proper-list (operator list)
   "Return LIST, over which OPERATOR iterates. Signals WRONG-ARGUMENT unless LIST is a proper list."
   (unless (proper-list-p list)
     (reject-argument operator 'list list "a proper list"))
@@ -183,7 +183,7 @@ Afterwards runs ENDING in an environment with NIL. A frame remembers the element
   (:parts (items function) (body node) (ending node))
   (:steps
    (begin
-    (setf memory (whole-list 'dolist (funcall items environment)))
+    (setf memory (checked-proper-list 'dolist (funcall items environment)))
     (at-once between-turns))
    (in-turn
     (cond ((or (null memory) (only-ready-task-p task)) (at-once between-turns))
@@ -213,23 +213,23 @@ of the next number and the limit."
                (next in-turn)
                (enter body (vector environment number) frame)))))))
 
-(defun each-body-code (variable body scope)
+(defun item-loop-body-code (variable body scope)
   "Return code for BODY in an environment in which VARIABLE is bound."
-  (binding-body-code body (variable-scope (single-scope scope) (list variable))))
+  (binding-body-code body (variable-scope (single-value-scope scope) (list variable))))
 
-(defun each-code (maker form variable part result body scope)
+(defun item-loop-code (maker form variable part result body scope)
   (destructuring-bind (slot source) part
-    (hoisting (source) form scope
+    (with-hoisted-arguments (source) form scope
       (block-code nil form scope
                   (lambda (scope)
                     (let ((inner (variable-scope scope (list variable))))
                       `(,maker :form ',(form-as-written form)
                                ,slot ,(value-lambda source scope)
-                               :body ,(each-body-code variable body scope)
+                               :body ,(item-loop-body-code variable body scope)
                                :ending ,(body-code (remove nil result) inner))))))))
 
 (define-plan-form "DOLIST" nil ((variable source &optional result) &rest body) (form scope)
-  (each-code 'make-each form variable (list :items source) (list result) body scope))
+  (item-loop-code 'make-each form variable (list :items source) (list result) body scope))
 
 (define-plan-form "DOTIMES" nil ((variable limit &optional result) &rest body) (form scope)
-  (each-code 'make-each-number form variable (list :limit limit) (list result) body scope))
+  (item-loop-code 'make-each-number form variable (list :limit limit) (list result) body scope))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(check-variables plain-parameters inner-scope scope single-scope
+(export '(check-variables untyped-parameters inner-scope scope single-value-scope
           variable-scope scope-variables scope))
 
 (defun invalid-variable-text (name environment)
@@ -50,7 +50,7 @@
        (known-function-p (first parameters) environment)
        "The list of parameters comes before the body; write () if the plan has no parameters"))
 
-(defun warn-of-parameters (parameters definition environment)
+(defun warn-of-missing-parameters (parameters definition environment)
   "Warn if one of PARAMETERS, in DEFINITION, has the name of a function by which plans command the
 robot. Then PARAMETERS is probably the first form of the body."
   (let ((name (find-if (lambda (name)
@@ -63,7 +63,7 @@ robot. Then PARAMETERS is probably the first form of the body."
                          if the plan has no parameters."
                         definition name))))
 
-(defun plain-parameters (parameters form environment &optional (definition (text-title)))
+(defun untyped-parameters (parameters form environment &optional (definition (text-title)))
   "Return the lambda list PARAMETERS, a part of FORM in DEFINITION, without types. Signals
 MALFORMED-DEFINITION if PARAMETERS is not an ordinary lambda list with types."
   (flet ((reject (trouble)
@@ -75,7 +75,7 @@ MALFORMED-DEFINITION if PARAMETERS is not an ordinary lambda list with types."
     (let* ((plain (untyped-lambda-list parameters definition))
            (trouble (invalid-parameters-text plain environment)))
       (when trouble (reject trouble))
-      (warn-of-parameters plain definition environment)
+      (warn-of-missing-parameters plain definition environment)
       plain)))
 
 ;;; Forms that bind, also where they are Lisp's to run.
@@ -98,9 +98,9 @@ MALFORMED-DEFINITION if PARAMETERS is not an ordinary lambda list with types."
     (unless (and (typep definition '(cons t (cons list t))) (proper-list-p definition))
       (reject-clause (text-title) (if (consp definition) definition form)
                      "(name parameters form...) for each"))
-    (plain-parameters (second definition) definition environment)))
+    (untyped-parameters (second definition) definition environment)))
 
-(defun check-names (form environment)
+(defun check-bound-names (form environment)
   (flet ((is (&rest names) (operator-in-p form names)))
     (cond ((is "LET" "LET*") (check-bindings form environment))
           ((is "FLET" "LABELS") (check-local-functions form environment))
@@ -149,15 +149,15 @@ handlers" :writable :export)
                :layers (cons layer (scope-layers scope))
                :environment (apply #'extended-environment (scope-environment scope) additions)))
 
-(defun single-scope (scope)
+(defun single-value-scope (scope)
   "Return a scope like SCOPE for an expression of which only the first value is used."
   (if (scope-several scope) (inner-scope scope :several nil) scope))
 
-(defun several-scope (scope)
+(defun multiple-values-scope (scope)
   "Return a scope like SCOPE for an expression of which all values are used."
   (inner-scope scope :several t))
 
-(defun check-lexical (variables environment)
+(defun check-lexical-variables (variables environment)
   (let ((variable (find-if (lambda (variable) (task-variable-p variable environment)) variables)))
     (when variable
       (reject-clause (text-title) variable
@@ -166,7 +166,7 @@ handlers" :writable :export)
 (defun variable-scope (scope variables)
   "Return a copy of SCOPE in which VARIABLES are bound in a new environment."
   (check-variables variables (scope-environment scope))
-  (check-lexical variables (scope-environment scope))
+  (check-lexical-variables variables (scope-environment scope))
   (let ((level (1+ (scope-level scope)))
         (special (find-if (lambda (variable)
                             (special-variable-p variable (scope-environment scope)))

@@ -3,8 +3,8 @@
 (in-package :ars-magna.rpl.language)
 
 (export '(text-title misplaced misplaced-advice misplaced-container misplaced-form
-          misplaced-suspension operator-in-p note-own-text note-expansion form-as-written
-          in-plans-only))
+          misplaced-suspension operator-in-p note-plan-text note-expansion form-as-written
+          plan-only-form))
 
 ;;; Inside a plan, IF, AND, < and so on have their plan meaning, whether they are symbols of Common
 ;;; Lisp, of Nisp or ours. Operators of Lisp or of this system's packages are known by name.
@@ -16,7 +16,7 @@
   "Return the name, for messages, of the definition or plan that is being compiled."
   (if *definition*
       (let ((form (defining-form *definition*)))
-        (title (first form) (second form)))
+        (definition-title (first form) (second form)))
       "plan"))
 
 (define-condition misplaced-suspension (malformed-definition)
@@ -42,7 +42,7 @@ the misplaced form.")
 (defun operator-text (form)
   (format nil "~(~A~)" (if (consp form) (first form) form)))
 
-(defparameter *advice*
+(defparameter *suspension-advice*
   '((("UNWIND-PROTECT") . "Write (evap-protect form cleanup): the cleanup may wait.")
     (("HANDLER-CASE" "HANDLER-BIND" "IGNORE-ERRORS" "RESTART-CASE" "WITH-SIMPLE-RESTART")
      . "Write (handle-failure ((type (e) ...)) body...): it also handles Lisp errors.")
@@ -76,7 +76,7 @@ the names of iterate's macros are left out."
        (symbolp (first form))
        (or (not (member (first form) '("ITER" "ITERATE") :test #'string=)) (iterate-call-p form))
        (cdr (find-if (lambda (names) (member (first form) names :test #'string=))
-                     *advice* :key #'car))))
+                     *suspension-advice* :key #'car))))
 
 (defun reject-suspension (form container)
   (let ((advice (or (advice-for-form container)
@@ -109,20 +109,20 @@ Lisp code, and looks like the prompt's command PLAN."
 (defvar *conses-of-plan-text* nil
   "A table of the conses of the text of the plan that is being compiled; NIL outside of plans.")
 
-(defmacro in-plans-only (form)
+(defmacro plan-only-form (form)
   "While a plan is compiled, expand to a form that stands for FORM, a form of the plan language.
 Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
-  (if *conses-of-plan-text* `(construct-form ',form) (reject-in-lisp form)))
+  (if *conses-of-plan-text* `(misplaced-construct ',form) (reject-in-lisp form)))
 
-(defun construct-form (form)
+(defun misplaced-construct (form)
   "Signal MISUSE, because Lisp runs FORM, a form of the plan language."
   (reject-in-lisp form))
 
-(defun construct-behind (form)
+(defun represented-construct (form)
   "Return the construct that FORM, a form in the expansion of a user's macro, stands for; or NIL."
   (typecase form
-    ((cons (eql in-plans-only)) (second form))
-    ((cons (eql construct-form)) (second (second form)))))
+    ((cons (eql plan-only-form)) (second form))
+    ((cons (eql misplaced-construct)) (second (second form)))))
 
 ;;; Names of operators.
 
@@ -137,7 +137,7 @@ Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
         ((system-symbol-p (first form)) (symbol-name (first form)))
         ((eq (first form) :tag) ":TAG")))
 
-(defun operator-key (name)
+(defun plan-form-key (name)
   (if (and (symbolp name) (system-symbol-p name)) (symbol-name name) name))
 
 (defun operator-in-p (form names)
@@ -145,7 +145,7 @@ Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
   (let ((name (plan-operator-name form)))
     (and name (member name names :test #'string=))))
 
-(defun plan-in-leaf-p (form)
+(defun plan-making-form-p (form)
   "True if FORM is a form that makes a plan, and so reads its own text."
   (operator-in-p form '("INTERP-LAMBDA" "DEF-INTERP-PROC")))
 
@@ -167,7 +167,7 @@ Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
 
 ;;; The plan's own text.
 
-(defun note-own-text (form)
+(defun note-plan-text (form)
   "Record that FORM and all forms in it belong to the text of the plan itself. Return FORM."
   (labels ((note (form)
              (loop while (and (consp form) (not (gethash form *conses-of-plan-text*)))
@@ -190,7 +190,7 @@ Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
   (let ((written (form-as-written form)))
     (labels ((note (part)
                (loop while (and (consp part)
-                                (not (own-text-p part))
+                                (not (plan-text-p part))
                                 (not (gethash part *written-forms*)))
                      do (setf (gethash part *written-forms*) written)
                         (note (car part))
@@ -201,18 +201,18 @@ Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
 (defun note-expansion (expansion form)
   "Record that EXPANSION counts as text of the plan itself, and that it stands for FORM. Return
 EXPANSION."
-  (note-own-text (note-written-as expansion form)))
+  (note-plan-text (note-written-as expansion form)))
 
-(defun own-text-p (form)
+(defun plan-text-p (form)
   (gethash form *conses-of-plan-text*))
 
-(defmacro with-own-text ((form) &body body)
+(defmacro with-plan-text ((form) &body body)
   "Run BODY while FORM, and all forms recorded meanwhile, count as the text of a plan. Generated
 names are the same every time, so that traces can be compared."
   `(let ((*conses-of-plan-text* (make-hash-table :test 'eq))
          (*written-forms* (make-hash-table :test 'eq))
          (*gensym-counter* 0))
-     (note-own-text ,form)
+     (note-plan-text ,form)
      ,@body))
 
 (defun mentions-p (symbol code)

@@ -24,7 +24,7 @@ layers of its scope. REPLACED is NIL, or a list of the replacing form and the or
    (unless (fail-or-escape task how result)
      (end-with-value task result))))
 
-(defun tag-task (node environment)
+(defun task-for-tag (node environment)
   (multiple-value-bind (holder index) (funcall (tagged-place node) environment)
     (let ((task (and holder (svref holder index))))
       (if (and task (eq (task-state task) :created))
@@ -40,7 +40,7 @@ layers of its scope. REPLACED is NIL, or a list of the replacing form and the or
   "Start BRANCH as part number INDEX of TASK. If BRANCH is tagged, start it as the task of its tag."
   (if (tagged-p branch)
       (spawn-gated task (tagged-body branch) environment index level
-                   (tag-task branch environment))
+                   (task-for-tag branch environment))
       (spawn task branch environment index level)))
 
 (defun tag-name-p (name)
@@ -55,7 +55,7 @@ layers of its scope. REPLACED is NIL, or a list of the replacing form and the or
                               `(lambda (,(scope-variable scope))
                                  (values ,(environment-form scope level) ,index))
                               '(constantly nil))
-                  :body ,(body-code body (single-scope scope))
+                  :body ,(body-code body (single-value-scope scope))
                   :layers ',(scope-layers scope)
                   :replaced '())))
 
@@ -117,7 +117,7 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
 ;;; each other. A tagged node keeps the layers of its scope, so that text that comes later can be
 ;;; compiled as if it stood there. Tasks that run keep the nodes that they started with.
 
-(defun scope-of (layers)
+(defun scope-from-layers (layers)
   "Return a scope with LAYERS, the innermost first, but without blocks, tags and local plans."
   (let ((scope (make-scope)))
     (dolist (layer (reverse layers) scope)
@@ -138,7 +138,7 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
                  (procedure (unless (eq part (find-procedure (procedure-name part) nil))
                               (ensure-list (procedure-body part)))))))
 
-(defun tagged-in (node name)
+(defun tagged-nodes-in (node name)
   "Return a list, in order, of the outermost tagged nodes with the name NAME in NODE."
   (let ((seen (make-hash-table :test 'eq)) (found '()))
     (labels ((visit (node)
@@ -150,7 +150,7 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
       (visit node))
     (nreverse found)))
 
-(defun find-tagged (operator path)
+(defun find-tagged-node (operator path)
   (unless (and (proper-list-p path) (rest path) (every #'symbolp (rest path)))
     (reject-argument operator 'path path
                      "a list of a plan and a tag, or of a plan and nested tags"))
@@ -160,7 +160,7 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
     (dolist (name (rest path))
       (setf nodes (remove-duplicates
                    (loop for node in nodes
-                         append (tagged-in (if (tagged-p node) (tagged-body node) node) name))
+                         append (tagged-nodes-in (if (tagged-p node) (tagged-body node) node) name))
                    :from-end t)))
     (unless (= 1 (length nodes))
       (reject-use "~(~A~): ~S leads to ~D places, not to one. A path is a list of a plan and a ~
@@ -181,7 +181,7 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
 replaces the original. PATH is a list of a plan, or its name, and a tag in this plan. Tags around
 this tag may come before the tag. Of nested places, the outermost is used. Signals UNKNOWN-NAME and
 WRONG-ARGUMENT. Signals MISUSE unless PATH leads to exactly one place."
-  (let ((node (find-tagged 'task-code path)))
+  (let ((node (find-tagged-node 'task-code path)))
     (if (tagged-replaced node)
         (values (first (tagged-replaced node)) t)
         (values (written-code node) nil))))
@@ -193,11 +193,11 @@ tasks are not affected. FORM can use the variables visible at the tag, but not t
 local plans there. The Lisp code in FORM is interpreted, as by MAKE-PLAN, or compiled if COMPILE is
 true. Redefining the plan discards FORM. Return FORM. Signals the errors of TASK-CODE, and
 MALFORMED-DEFINITION. (From CRAM, where REPLACE-TASK-CODE takes a function.)"
-  (let* ((node (find-tagged 'replace-task-code path))
+  (let* ((node (find-tagged-node 'replace-task-code path))
          (body (call-reporting-form
                 (lambda ()
-                  (with-own-text (form)
-                    (evaluate-form (plan-code form (scope-of (tagged-layers node)))
+                  (with-plan-text (form)
+                    (evaluate-form (plan-code form (scope-from-layers (tagged-layers node)))
                                    :compile compile)))
                 (list 'replace-task-code path form))))
     (setf (tagged-replaced node) (list form (or (second (tagged-replaced node))
@@ -208,7 +208,7 @@ MALFORMED-DEFINITION. (From CRAM, where REPLACE-TASK-CODE takes a function.)"
 (addition restore-task-code)
 (defun restore-task-code (path)
   "Restore the code of tasks at PATH (see TASK-CODE) from their next start on. Return the code."
-  (let ((node (find-tagged 'restore-task-code path)))
+  (let ((node (find-tagged-node 'restore-task-code path)))
     (when (tagged-replaced node)
       (setf (tagged-body node) (second (tagged-replaced node))
             (tagged-replaced node) nil))

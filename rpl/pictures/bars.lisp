@@ -56,7 +56,7 @@ colours. The colours differ for any colour vision and in grey: tests/palette.lis
     (and (<= (scale-left scale) x) (<= (scale-start scale) tick (scale-end scale))
          tick)))
 
-(defun round-tick-step (span &optional (most 12))
+(defun axis-tick-step (span &optional (most 12))
   "Return the number of ticks between two labels of an axis that shows SPAN ticks with at most about
 MOST labels. The number is 1, 2 or 5 times a power of ten."
   (loop for power = 1 then (* 10 power)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-pictures)
 
-(export '(make-timeline-page page-scale draw-page))
+(export '(make-timeline-page timeline-page-scale draw-timeline-page))
 
 ;;; The parts of a task stand below it. Parts that run the same expression one after the other, as
 ;;; the turns of a loop do, share a row, so that a long run needs no more rows than a short one.
@@ -42,7 +42,7 @@
 
 (defun draw-axis (canvas scale top bottom)
   "Draw lines from TOP to BOTTOM at round numbers of ticks, with these numbers above and below."
-  (loop with step = (round-tick-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
+  (loop with step = (axis-tick-step (scale-span scale) (clamp (floor (scale-width scale) 50) 2 12))
         for tick from (* step (ceiling (scale-start scale) step)) to (scale-end scale) by step
         for x = (x-of-tick tick scale)
         for text = (princ-to-string tick)
@@ -184,7 +184,7 @@ TITLE. The default title is the range of ticks. Return the width and height in p
 
 ;;; In a place of any width.
 
-(defun page-scale (page width)
+(defun timeline-page-scale (page width)
   "Return the scale for PAGE in WIDTH pixels. The names of tasks take at most half."
   (let ((left (labels-width (page-rows page) 100 (max 100 (floor width 2)))))
     (make-scale (page-start page) (page-end page) left (max 60 (- width left 24)))))
@@ -192,11 +192,11 @@ TITLE. The default title is the range of ticks. Return the width and height in p
 (define-constant +axis-height+ 26
   :documentation "The height of the tick numbers above the rows of a page, in pixels.")
 
-(defun draw-page (canvas page &key (width 640) (top 0) (from 0) to)
+(defun draw-timeline-page (canvas page &key (width 640) (top 0) (from 0) to)
   "Draw PAGE on CANVAS, WIDTH pixels wide, from TOP down. FROM and TO, in pixels from the top, are
 the visible part: other rows are not drawn, and the tick numbers stay above the visible rows. Return
 the y coordinate of the end of PAGE, in pixels."
-  (let* ((scale (page-scale page width))
+  (let* ((scale (timeline-page-scale page width))
          (first (+ top +axis-height+))
          (bottom (+ first (rows-height (page-rows page))))
          (axis (min (+ first from) bottom)))

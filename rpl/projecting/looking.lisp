@@ -25,8 +25,8 @@ true. Return the values of BODY. Signals WRONG-ARGUMENT."
 believed world, return a snapshot of that world after a rollout."
   (let* ((rollout (first (projection-rollouts projection)))
          (scene (rollout-scene rollout)))
-    (if (scene-moment scene)
-        (take-snapshot (simulation-world (scene-moment scene)))
+    (if (rollout-start-moment scene)
+        (take-snapshot (simulation-world (rollout-start-moment scene)))
         (roll-out scene (rollout-trial rollout) (rollout-seed rollout)
                   :then (lambda (again)
                           (declare (ignore again))

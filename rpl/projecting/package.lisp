@@ -23,6 +23,6 @@ believes in, to estimate how they may end, and to choose the best.")
                 #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
-                #:*interface* #:*realm* #:fork-realm)
+                #:*default-interface* #:*realm* #:fork-realm)
   (:import-from :ars-magna.trails #:update-trails #:trails-to-ways #:save-picture-of-ways)
   (:import-from :ars-magna.display #:take-snapshot #:picture-kind))

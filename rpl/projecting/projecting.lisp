@@ -64,7 +64,7 @@ WRONG-ARGUMENT if there is a WORLD, because tasks do not exist in believed world
 (defun question-of-plan (task plan arguments options)
   (let ((question (make-question task (asking-interface task) (fluent-value plan)
                                  (fluent-value arguments) options)))
-    (when (option question :world) (check-known-in-belief question))
+    (when (question-option question :world) (check-known-in-belief question))
     question))
 
 (define-construct project (plan &key arguments trials horizon seed cost world print)
@@ -109,7 +109,7 @@ McDermott's projection of reactive plans, 1992.)"
            (enter-application (question-plan memory) (question-arguments memory) frame))
           (t (values (frame-up frame) value))))
    (inside
-    (note-ended memory :succeeded value)
+    (note-question-end memory :succeeded value)
     (at-once ended))
    ;; A rollout goes no further.
    (ended
@@ -130,7 +130,7 @@ McDermott's projection of reactive plans, 1992.)"
                             (interface-p (runner-client (task-runner plan))))
                        (runner-client (task-runner plan))
                        (ensure-interface))))
-    (when (holding-p interface)
+    (when (holding-plans-p interface)
       (reject-use "project: a plan is at work here. Write PROJECT in the text of the plan itself, ~
                    outside of any lambda."))
     interface))
@@ -140,7 +140,7 @@ McDermott's projection of reactive plans, 1992.)"
   (let ((interface (wish-interface question)))
     (call-with-plans (lambda () (add-wish question)) interface)
     (unwind-protect (let ((*fork-operator* (question-operator question)))
-                      (drop-records (fork-simulation (interface-simulation interface))))
+                      (disable-recording (fork-simulation (interface-simulation interface))))
       (call-with-plans (lambda () (forget-wish question)) interface))))
 
 (addition project-plan)
@@ -198,7 +198,7 @@ on the run. Fails with CANNOT-FORK if the run cannot be forked."
     (next inside)
     (enter (svref branches value) environment frame))
    (inside
-    (note-ended memory :succeeded value)
+    (note-question-end memory :succeeded value)
     (values (frame-up frame) value)))
   (:unwind
    (when (and memory (in-state-p inside)) (note-signal memory signal))

@@ -4,7 +4,7 @@
 
 (addition projection-p)
 
-(defstruct (scene (:constructor make-scene (question moment branch)) (:copier nil))
+(defstruct (rollout-start (:constructor make-rollout-start (question moment branch)) (:copier nil))
   "The start of rollouts that try BRANCH, a number, of QUESTION. MOMENT is a fork in which a copy of
 QUESTION waits for its answer; rollouts are forks of MOMENT. Without a MOMENT, rollouts begin in a
 believed world."
@@ -16,7 +16,7 @@ believed world."
 (define-record (rollout (:constructor make-rollout
                             (scene trial seed state result ticks cost steps ways &optional broken)))
   "One trial of a projection."
-  (scene nil scene)
+  (scene nil rollout-start)
   (trial 0 fixnum "the number of the trial")
   (seed 0 integer "the integer from which all chance in the rollout came" :addition)
   (state :limit keyword "how the rollout ended: :succeeded, :failed, :evaporated, :deadlock,
@@ -31,7 +31,7 @@ without waiting" :addition)
   (broken nil (or null keyword)
           "the option, :COST or :WORLD, whose function's error ended the rollout, or NIL"))
 
-(define-shared scene rollout)
+(define-shared rollout-start rollout)
 
 (addition rollout-succeeded-p)
 (defun rollout-succeeded-p (rollout)
@@ -134,7 +134,7 @@ the rollout's state."
 
 (defun first-error-text (projection)
   (let ((condition (some #'rollout-error (projection-rollouts projection))))
-    (and condition (cut (brief-text condition) 120))))
+    (and condition (cut (brief-condition-text condition) 120))))
 
 (defun reasons-text (projection)
   (let ((failures (projection-failures projection)))

@@ -25,7 +25,7 @@ ENDED and RESULT say how the branch or plan on trial has ended."
 (defvar *current-question* nil
   "The question of a plan for which this thread runs rollouts, or NIL.")
 
-(defun option (question key)
+(defun question-option (question key)
   (getf (question-options question) key))
 
 (defmethod awaited-text ((question question))
@@ -44,7 +44,7 @@ ENDED and RESULT say how the branch or plan on trial has ended."
               (cons (or (if (procedure-p plan) (procedure-name plan) plan) 'interp-lambda)
                     (question-arguments question)))))))
 
-(defun note-ended (question state result)
+(defun note-question-end (question state result)
   "Record, in a rollout, that the branch or plan tried by QUESTION has ended in STATE with RESULT."
   (when question
     (setf (question-ended question) state
@@ -52,9 +52,9 @@ ENDED and RESULT say how the branch or plan on trial has ended."
 
 (defun note-signal (question signal)
   "Record, in a rollout, that SIGNAL has ended QUESTION's trial. RETURN-FROM counts as success."
-  (cond ((typep signal 'plan-failure) (note-ended question :failed signal))
-        ((escape-p signal) (note-ended question :succeeded nil))
-        ((eq signal :evaporate) (note-ended question :evaporated nil))))
+  (cond ((typep signal 'plan-failure) (note-question-end question :failed signal))
+        ((escape-p signal) (note-question-end question :succeeded nil))
+        ((eq signal :evaporate) (note-question-end question :evaporated nil))))
 
 ;;; Options.
 
@@ -97,12 +97,12 @@ and :HORIZON. Values may be fluents. Signals WRONG-ARGUMENT."
 from the run's seed, the tick, and the number of earlier questions in that tick."
   (let* ((interface (wish-interface question))
          (simulation (if interface (interface-simulation interface) *simulation*))
-         (seed (option question :seed)))
+         (seed (question-option question :seed)))
     (cond (seed (hash-numbers seed trial))
           ((null simulation) (hash-numbers 0 trial))
           (t (hash-numbers (simulation-seed simulation)
                            (simulation-tick simulation)
-                           (if (wish-task question) (wishes-in-tick interface) -1)
+                           (if (wish-task question) (served-wish-count interface) -1)
                            trial)))))
 
 ;;;; Answers
@@ -116,11 +116,11 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
 
 (defun project-branch (question moment branch)
   "Return the projection of BRANCH, a number, of QUESTION, by rollouts from MOMENT: see SCENE."
-  (let ((scene (make-scene question moment branch)))
+  (let ((scene (make-rollout-start question moment branch)))
     (make-projection (question-text question branch)
                      (if moment (simulation-tick moment) 0)
-                     (option question :horizon)
-                     (loop for trial from 1 to (option question :trials)
+                     (question-option question :horizon)
+                     (loop for trial from 1 to (question-option question :trials)
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
 (defun report-function-errors (question projections)
@@ -153,17 +153,18 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
 (defun answer-by-rollouts (question)
   "Answer QUESTION, asked by a plan, by rollouts. Return :LATER if the answer is no longer needed."
   (let* ((interface (wish-interface question))
-         (moment (and (null (option question :world))
+         (moment (and (null (question-option question :world))
                       (let ((*fork-operator* (question-operator question)))
-                        (drop-records (fork-at-rest interface)))))
+                        (disable-recording (fork-resting-simulation interface)))))
          (projections (catch 'abandoned
                         (let ((*current-question* question)) (project-branches question moment)))))
     (cond ((null projections) :later)
           (t (charge-for-rollouts projections question)
              (if (question-branches question)
                  (let ((best (index-of-best projections)))
-                   (when (option question :tell)
-                     (call-user-code (option question :tell) "the function :TELL of a TRY-BEST"
+                   (when (question-option question :tell)
+                     (call-user-code (question-option question :tell)
+                                     "the function :TELL of a TRY-BEST"
                                      projections best))
                    (grant-wish question best))
                  (grant-wish question (first projections)))))))

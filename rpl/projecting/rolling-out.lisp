@@ -17,7 +17,7 @@ or else how the asking plan has. Return NIL if nothing has ended yet."
 
 (defun question-cost (question)
   "Return the value of QUESTION's function :COST, or NIL without :COST. Signals WRONG-ARGUMENT."
-  (let ((function (option question :cost)))
+  (let ((function (question-option question :cost)))
     (when function
       (let ((cost (funcall function)))
         (unless (valid-cost-p cost)
@@ -30,7 +30,7 @@ or else how the asking plan has. Return NIL if nothing has ended yet."
 is the option whose function signalled CONDITION, or NIL."
   (values :failed (make-condition 'lisp-failure :condition condition) nil option))
 
-(defun add-cost (question how result)
+(defun values-with-cost (question how result)
   (handler-case (values how result (question-cost question))
     (error (condition) (failed-rollout-values condition :cost))))
 
@@ -40,7 +40,7 @@ ticks of the current simulation pass until the plan or branch has ended, or the 
 called after each tick, returns a state. Return four values: the state, the result, the cost, and
 the option whose function signalled an error, or NIL."
   (handler-case
-      (let* ((last (+ (simulation-tick) (option question :horizon)))
+      (let* ((last (+ (simulation-tick) (question-option question :horizon)))
              (task (funcall begin))
              (how (pass-until interface
                               (lambda ()
@@ -50,7 +50,7 @@ the option whose function signalled an error, or NIL."
                                 (or (funcall over)
                                     (final-state-of-question task question interface)))
                               last)))
-        (add-cost question how (if task (task-result task) (question-result question))))
+        (values-with-cost question how (if task (task-result task) (question-result question))))
     (error (condition) (failed-rollout-values condition))))
 
 ;;; A plan that never waits would take a million steps in each tick, to no use.
@@ -123,14 +123,15 @@ outside, as in a fork."
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (progv (mapcar #'robot-name robots) '()
       (progv *simulation-variables* (mapcar #'symbol-value *simulation-variables*)
-        (let ((*simulation* nil) (*world* nil) (*interface* nil) (*realm* (fork-realm *realm*)))
+        (let ((*simulation* nil) (*world* nil) (*default-interface* nil)
+              (*realm* (fork-realm *realm*)))
           (with-seclusion (funcall function)))))))
 
-(defun run-in-belief (scene trial seed)
+(defun run-rollout-in-belief (scene trial seed)
   (unless *simulation*
     (reject-use "project: the function :world must call its argument, a function, inside of ~
                  (with-simulation ...)."))
-  (let ((question (scene-question scene)) (interface (ensure-interface)))
+  (let ((question (rollout-start-question scene)) (interface (ensure-interface)))
     (run-rollout scene trial seed question interface
                  (lambda ()
                    (begin-plan-in-interface
@@ -147,11 +148,13 @@ function THEN with the rollout in that world, and return the values of THEN."
   (let ((values '()) (called-p nil))
     (flet ((run ()
              (setf called-p t
-                   values (multiple-value-list (funcall then (run-in-belief scene trial seed))))))
+                   values (multiple-value-list (funcall then (run-rollout-in-belief scene trial
+                                                                                    seed))))))
       (handler-case
           (progn
             (call-without-run (lambda ()
-                                (funcall (option (scene-question scene) :world) #'run seed)))
+                                (funcall (question-option (rollout-start-question scene) :world)
+                                         #'run seed)))
             (unless called-p
               (reject-use "project: the function :world has not called its argument, a function.")))
         (error (condition)
@@ -162,7 +165,7 @@ function THEN with the rollout in that world, and return the values of THEN."
 ;;; fork of it with its own seed; so all begin alike, also if the run goes on meanwhile, and
 ;;; any of them can be looked at again.
 
-(defun call-for-rollout (function print)
+(defun call-with-rollout-settings (function print)
   "Call FUNCTION, which runs a rollout, outside of reactions of plans and without a debugger. Drop
 the output of FUNCTION unless PRINT is true."
   (let ((*rolling-out* t)
@@ -176,7 +179,7 @@ the output of FUNCTION unless PRINT is true."
 
 ;;; The moment.
 
-(defun drop-records (moment)
+(defun disable-recording (moment)
   "Make MOMENT, a fork, keep no journal and no trace, and report no errors. Return MOMENT."
   (setf (simulation-journal moment) nil
         (message-queue-error-policy (simulation-messages moment)) :collect)
@@ -188,7 +191,7 @@ the output of FUNCTION unless PRINT is true."
 
 (defun begin-rollout (question branch)
   "Begin the plan, or the branch number BRANCH, of QUESTION in a fork. Return the task whose end is
-the end of the rollout, or NIL if NOTE-ENDED records the end."
+the end of the rollout, or NIL if NOTE-QUESTION-END records the end."
   (let ((interface (wish-interface question)) (task (wish-task question)))
     (call-with-plans (lambda ()
                        (cond ((null task) (forget-wish question))
@@ -201,41 +204,43 @@ the end of the rollout, or NIL if NOTE-ENDED records the end."
           ((null task)
            (begin-plan-in-interface
             interface (question-plan question) (question-arguments question) #'identity))
-          ((and (question-branches question) (not (eq :branch (option question :until))))
+          ((and (question-branches question) (not (eq :branch (question-option question :until))))
            (task-top task)))))
 
 (defun projection-without-rollouts (question)
   "Return the projection without rollouts that PROJECT returns for QUESTION in a rollout."
-  (make-projection (question-text question) (simulation-tick) (option question :horizon) '()))
+  (make-projection (question-text question) (simulation-tick) (question-option question :horizon)
+                   '()))
 
 (defun roll-out-in-fork (scene trial seed then)
-  (let ((fork (fork-simulation (scene-moment scene) :seed seed)))
+  (let ((fork (fork-simulation (rollout-start-moment scene) :seed seed)))
     (unwind-protect
          (call-in-fork
           fork
           (lambda ()
-            (let* ((original (scene-question scene))
+            (let* ((original (rollout-start-question scene))
                    (interface (interface-of-robot (interface-robot (wish-interface original)) fork))
                    (question (find (question-token original)
                                    (remove-if-not #'question-p (interface-wishes interface))
                                    :key #'question-token)))
               (funcall then (run-rollout scene trial seed question interface
                                          (lambda ()
-                                           (begin-rollout question (scene-branch scene))))))))
+                                           (begin-rollout question
+                                                          (rollout-start-branch scene))))))))
       (release-fork fork))))
 
 (defun roll-out (scene trial seed &key (then #'identity) print)
   "Run the rollout number TRIAL of SCENE, with SEED. At its end, call the function THEN with the
 rollout, inside of its run, and return the values of THEN. No other run changes. Drop the output of
 plans unless PRINT, or the option :PRINT of the question, is true."
-  (let* ((question (scene-question scene))
+  (let* ((question (rollout-start-question scene))
          (output *standard-output*) (errors *error-output*)
          (then (lambda (rollout)
                  (let ((*standard-output* output) (*error-output* errors))
                    (funcall then rollout)))))
-    (call-for-rollout (lambda ()
-                        (let ((*fork-operator* (question-operator question)))
-                          (if (scene-moment scene)
-                              (roll-out-in-fork scene trial seed then)
-                              (roll-out-in-belief scene trial seed then))))
-                      (or print (option question :print)))))
+    (call-with-rollout-settings (lambda ()
+                                  (let ((*fork-operator* (question-operator question)))
+                                    (if (rollout-start-moment scene)
+                                        (roll-out-in-fork scene trial seed then)
+                                        (roll-out-in-belief scene trial seed then))))
+                                (or print (question-option question :print)))))

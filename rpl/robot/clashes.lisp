@@ -15,7 +15,7 @@
   "After this many ticks, a second warning names plans that still take a part from each other.
 Messages of takeovers may have pushed the first warning out of the queue.")
 
-(defun takeover-count (interface resource)
+(defun takeover-entry (interface resource)
   (let ((tick (simulation-tick (interface-simulation interface))))
     (unless (eql tick (interface-takeover-tick interface))
       (setf (interface-takeover-tick interface) tick
@@ -48,13 +48,13 @@ each other for ever. The text does not depend on their order."
     (unless (and said (< tick (+ (cdr said) +takeover-warning-ticks+)))
       (setf (interface-warned interface)
             (acons text tick (remove said (interface-warned interface))))
-      (warn-notably text ". They continue in each tick. Let one at a time own the robot's valve: "
+      (queue-notable-warning text ". They continue in each tick. Let one at a time own the robot's valve: "
                    "see RPL-ROBOT-VALVE."))))
 
 (defun count-takeover (interface resource older newer)
   "Count that the task NEWER, or NIL, has taken RESOURCE over from the task OLDER, or NIL. After too
 many takeovers, let time pass."
-  (let ((count (takeover-count interface resource))
+  (let ((count (takeover-entry interface resource))
         (runner (interface-runner interface))
         (same-plan-p (and older newer (eq (task-top older) (task-top newer)))))
     ;; Commands of plans that take a part from each other are no endless commands of one plan.
@@ -65,7 +65,7 @@ many takeovers, let time pass."
       (when same-plan-p (setf (runner-note runner 'cut-short) (plan-runner-tick runner)))
       (exhaust-reaction runner))))
 
-(defun waits-for-tick-p (interface)
+(defun must-wait-for-tick-p (interface)
   "True if plans have taken over a part too often in this tick and must wait for the next tick."
   (and (eql (simulation-tick (interface-simulation interface)) (interface-takeover-tick interface))
        (loop for (nil . count) in (interface-takeovers interface)
@@ -116,7 +116,7 @@ returns the settings of fluents at that end. Return NIL if no fluent is pulsed."
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
 ;;; plans that were begun one after the other know nothing of each other.
 
-(defun all-to-succeed-p (task)
+(defun all-subtasks-must-succeed-p (task)
   (let ((frame (task-frame task)))
     (and frame
          (operator-called-p (node-form (frame-node frame)) "PAR" "PAR-LOOP" "PARTIAL-ORDER"))))
@@ -144,7 +144,7 @@ NIL; reactions outside of WHOLE do not count."
        (<= (task-level newer) (task-level older))
        (let ((common (find-if (lambda (whole) (part-of-p newer whole)) (lineage older))))
          (and (not (member common (list older newer)))
-              (or (null common) (all-to-succeed-p common))
+              (or (null common) (all-subtasks-must-succeed-p common))
               (not (reacting-to-events-p newer common))))))
 
 (defun action-text (action)

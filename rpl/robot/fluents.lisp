@@ -12,14 +12,14 @@ part is a symbol, NIL for the robot itself.")
 
 (pushnew '*fluent-variables* *variables-to-restore*)
 
-(defun fluent-kind (kind)
+(defun fluent-part-kind (kind)
   "Return the name of KIND, a kind of part; NIL for ROBOT. Signals an error if KIND is unknown."
   (unless (same-name-p kind 'robot)
     (or (find-kind-name kind 'part)
         (reject-clause "define-fluents" kind "ROBOT, or a kind of part such as CAMERA"))))
 
 (defun note-fluent-variable (variable kind)
-  (pushnew (list variable (fluent-kind kind) (string-downcase variable)) *fluent-variables*
+  (pushnew (list variable (fluent-part-kind kind) (string-downcase variable)) *fluent-variables*
            :key #'first))
 
 (defmacro define-fluents (kind &body definitions)
@@ -27,14 +27,14 @@ part is a symbol, NIL for the robot itself.")
 (name documentation), followed by :ADDITION if the manual does not have the name. If a fluent is
 pulsed, and never set, its documentation begins with the word Pulsed. Return the names."
   `(progn
-     (fluent-kind ',kind)
+     (fluent-part-kind ',kind)
      ,@(loop for (name text mark) in definitions
              collect `(,(if mark 'addition 'public) ,name)
              collect `(defvar ,name nil ,(format nil "~A~@[~A~]~:[~; (Manual C.)~]" text
                                                  (unless (same-name-p kind 'robot)
                                                    (format nil " A vector with a fluent for each ~
                                                                 ~(~A~)." kind))
-                                                 (and *marking-p* (not mark))))
+                                                 (and *loading-simulator-p* (not mark))))
              collect `(note-fluent-variable ',name ',kind)
              collect `(declare-fluent-variable
                        ',name :kind ,(if (same-name-p kind 'robot) t (string-downcase kind))

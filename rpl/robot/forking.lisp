@@ -99,7 +99,7 @@ the task with the number SERIAL. If SERIAL is NIL, the last argument is the runn
     (record-plan-action interface #'repeat-call word arguments
                         (and (task-p subject) (task-serial subject)))))
 
-(defun name-of-fluent (fluent)
+(defun fluent-variable-and-index (fluent)
   "Return a list (variable index) for FLUENT; the index is NIL unless the variable holds a vector.
 Return FLUENT itself if no variable holds FLUENT."
   (loop for (variable) in *fluent-variables*
@@ -109,8 +109,8 @@ Return FLUENT itself if no variable holds FLUENT."
           return (list variable index)
         finally (return fluent)))
 
-(defun repeat-change (function name value)
-  "Call FUNCTION with the fluent of this run with the name NAME (see NAME-OF-FLUENT) and VALUE."
+(defun repeat-fluent-change (function name value)
+  "Call FUNCTION with the fluent of this run with the name NAME (see FLUENT-VARIABLE-AND-INDEX) and VALUE."
   (funcall function
            (if (consp name)
                (destructuring-bind (variable index) name
@@ -121,7 +121,8 @@ Return FLUENT itself if no variable holds FLUENT."
 (defun record-fluent-change (function fluent value)
   "Record for rewinds that FUNCTION has been called with FLUENT and VALUE from outside of plans."
   (when (and *simulation* (simulation-past *simulation*))
-    (record-outside-act *simulation* #'repeat-change function (name-of-fluent fluent) value)))
+    (record-outside-act *simulation* #'repeat-fluent-change function
+                        (fluent-variable-and-index fluent) value)))
 
 (defmethod note-outside-change ((interface interface) function fluent value)
   (record-fluent-change function fluent value))
@@ -139,7 +140,7 @@ Return FLUENT itself if no variable holds FLUENT."
   ;; The realm may be that of a live run around OLD, too.
   (when (or (eq old (global-value '*simulation*))
             (not (eq (realm-of-simulation old) (global-value '*realm*))))
-    (leave-realm (realm-of-simulation old) (realm-of-simulation new))))
+    (drop-realm-references (realm-of-simulation old) (realm-of-simulation new))))
 
 (add-listener *rewind-hooks* drop-fluents-of-old-run)
 
@@ -180,36 +181,36 @@ started a new run. Fluents keep their last values."
         (robot (forked (interface-robot interface) copier))
         (realm (forked (source-realm copier) copier)))
     (setf (interface-ender twin) (lambda () (close-interface twin)))
-    (push (make-weak (interface-runner interface)) (realm-sources realm))
+    (push (make-weak-reference (interface-runner interface)) (realm-sources realm))
     (push (interface-ender twin) (robot-enders robot))
     twin))
 
 ;; What this thread is in the middle of cannot continue in a fork.
 (defmethod participant-around-p ((interface interface))
-  (and (holding-p interface) (not (interface-resting-p interface))))
+  (and (holding-plans-p interface) (not (interface-resting-p interface))))
 
 (defmethod check-forkable ((interface interface))
   (when (participant-around-p interface)
     (refuse-fork "a plan is at work here. In the text of a plan, use PROJECT or ~
                   TRY-BEST, which fork the run when the plans are at rest.")))
 
-(defun call-holding-at-rest (interface function)
+(defun call-with-plans-at-rest (interface function)
   "Call FUNCTION while this thread holds the plans of INTERFACE, and return its value. Return :BUSY
 if another thread holds the plans."
   (multiple-value-bind (value free-p)
       (call-if-free (interface-lock interface)
                     (lambda ()
-                      (call-holding (lambda ()
-                                      ;; This repairs what an interrupt has left.
-                                      (at-home ((interface-runner interface)))
-                                      (funcall function))
-                                    interface)))
+                      (call-holding-plans (lambda ()
+                                            ;; This repairs what an interrupt has left.
+                                            (with-owned-home ((interface-runner interface)))
+                                            (funcall function))
+                                          interface)))
     (if free-p value :busy)))
 
 (defmethod participant-at-rest ((interface interface) function)
   (cond ((interface-resting-p interface) (funcall function))
         (t (check-not-blocked interface)
-           (call-holding-at-rest interface function))))
+           (call-with-plans-at-rest interface function))))
 
 (defmethod call-as-participant-makes-way ((interface interface) function)
   (call-wanting-plans (lambda (have)
@@ -218,7 +219,7 @@ if another thread holds the plans."
                       interface))
 
 (defmethod participant-place ((interface interface) value)
-  (multiple-value-bind (task name) (task-holding-value value (interface-runner interface))
+  (multiple-value-bind (task name) (task-whose-variable-holds value (interface-runner interface))
     (and task (format nil "the variable ~(~A~) of the task ~D, ~A"
                       name (task-serial task) (task-label task)))))
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(interface-p holding-p call-with-plans))
+(export '(interface-p holding-plans-p call-with-plans))
 
 ;;; The thread in which plans react holds the interface's lock. Headless that is the thread that
 ;;; passes ticks or starts plans; live it is their own thread, which exists while there are
@@ -78,7 +78,7 @@ prompt was given another robot later")
            until (or (not (member ,task ,tasks))
                      (swap-if-eq ,place ,tasks (remove ,task ,tasks))))))
 
-(pushnew '*interface* *simulation-variables*)
+(pushnew '*default-interface* *simulation-variables*)
 (pushnew '*realm* *simulation-variables*)
 
 (defvar *reacting-interface* nil
@@ -89,7 +89,7 @@ prompt was given another robot later")
 (defvar *held-interfaces* '()
   "The interfaces whose plans this thread holds.")
 
-(defun holding-p (interface)
+(defun holding-plans-p (interface)
   "True if this thread holds the plans of INTERFACE, to let them react or to look at them."
   (and (member interface *held-interfaces* :test #'eq) t))
 
@@ -99,7 +99,7 @@ prompt was given another robot later")
     (setf (interface-next-tick interface)
           (and runner (if (runner-idle-p runner) (next-wake-time runner) :ready)))))
 
-(defun call-holding (function interface)
+(defun call-holding-plans (function interface)
   "This thread has locked INTERFACE. Call FUNCTION, interruptibly, as the holder of its plans."
   (let* ((held (cons interface *held-interfaces*)) (*held-interfaces* held))
     (declare (dynamic-extent held))
@@ -112,9 +112,10 @@ prompt was given another robot later")
 (defun call-with-plans-if-free (function interface)
   "Call FUNCTION as CALL-WITH-PLANS does, and return its value and true. If another thread holds the
 plans of INTERFACE, do not wait; return NIL and false."
-  (if (holding-p interface)
+  (if (holding-plans-p interface)
       (values (funcall function) t)
-      (call-if-free (interface-lock interface) (lambda () (call-holding function interface)))))
+      (call-if-free (interface-lock interface)
+                    (lambda () (call-holding-plans function interface)))))
 
 (defun wake-tick (interface)
   "Return the earliest tick at which a plan of INTERFACE that waits for time wakes. Return NIL if no
@@ -122,13 +123,13 @@ plan waits for time, or if a plan is ready. Any thread may call this function."
   (let ((tick (interface-next-tick interface)))
     (and (realp tick) tick)))
 
-(defun ready-p (interface)
+(defun plans-ready-p (interface)
   "True if plans of INTERFACE are ready, have posts to apply, or wait for time. For any thread."
   (and (or (interface-next-tick interface)
            (outside-request-p (interface-runner interface)))
        t))
 
-(defun in-debugger-p (interface)
+(defun plans-in-debugger-p (interface)
   "True if the thread of INTERFACE's plans waits for an answer in a debugger. For any thread."
   (let ((calls (interface-calls interface)))
     (and calls (user-calls-origin calls) (user-calls-waiting-p calls))))
@@ -136,13 +137,13 @@ plan waits for time, or if a plan is ready. Any thread may call this function."
 (defun blocking-task (interface)
   ;; The watcher sees only at its next sample that it has gone on.
   (let ((task (interface-hog interface)))
-    (and task (eq :running (task-state task)) (not (in-debugger-p interface)) task)))
+    (and task (eq :running (task-state task)) (not (plans-in-debugger-p interface)) task)))
 
 ;; At a plain REPL a thread that waits for the plans gives their debugger the terminal. An editor
 ;; shows it elsewhere.
 (defun check-not-in-debugger (interface)
   "Signal MISUSE if the plans of INTERFACE, in another thread, have stopped in a debugger."
-  (when (and (in-debugger-p interface)
+  (when (and (plans-in-debugger-p interface)
              (foreign-hook)
              (not (eq (current-thread) (interface-thread interface))))
     (reject-use "The plans of ~A have stopped in a debugger, in the thread ~A. Choose in the ~
@@ -176,14 +177,14 @@ known to run Lisp code that does not return, or waits in the debugger of an edit
 you can meanwhile answer a plan that waits in a debugger."
   (check-not-blocked interface)
   (check-not-in-debugger interface)
-  (if (holding-p interface)
+  (if (holding-plans-p interface)
       (funcall function)
       (call-wanting-plans
        (lambda (have)
          (call-when-free (interface-lock interface)
                          (lambda ()
                            (funcall have)
-                           (call-holding function interface))))
+                           (call-holding-plans function interface))))
        interface)))
 
 (defmacro with-plans ((interface) &body body)
@@ -235,7 +236,7 @@ you can meanwhile answer a plan that waits in a debugger."
 
 (defun interface-in-use-here ()
   "Return the interface whose plans react in this thread, or else the interface in use; or NIL."
-  (or *reacting-interface* *interface*))
+  (or *reacting-interface* *default-interface*))
 
 (defun usable-interface ()
   (let ((interface (interface-in-use-here)))

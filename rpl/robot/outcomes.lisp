@@ -45,11 +45,11 @@ ROBOT, otherwise the first argument."
       (let ((arguments (loop for spec in (command-parameters command)
                              for argument in arguments
                              collect (convert-argument argument (spec-type spec) operator))))
-        (check-in-plan interface operator command arguments)
+        (check-command-arguments interface operator command arguments)
         (note-last-command interface operator resource)
         (issue-action interface command resource arguments outcome issue)))))
 
-(defun command-in-plan (operator command outcome arguments)
+(defun issue-plan-command (operator command outcome arguments)
   "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
 and the results, returns the settings of fluents at the end of COMMAND. Return nothing."
   (let ((interface (required-interface)))
@@ -59,7 +59,7 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
       (issue-in-plan interface operator command outcome arguments)))
   (values))
 
-(defun search-under-way (interface)
+(defun searching-camera (interface)
   "Return the camera of a search for designators that plans of INTERFACE wait for, or NIL."
   (flet ((search-p (action)
            (and (action-open-p action)
@@ -73,14 +73,14 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
   "Return text on what a plan of INTERFACE must give instead of ARGUMENT, which is not of TYPE."
   (let ((camera (and (null argument)
                      (same-name-p type 'designator)
-                     (search-under-way interface))))
+                     (searching-camera interface))))
     (if camera
         (format nil "a designator, which the search that is still under way has yet to find: ~
                      (wait-for (vref camera-input* ~D)) first"
                 (part-index camera))
         (argument-type-text type argument))))
 
-(defun check-in-plan (interface operator command arguments)
+(defun check-command-arguments (interface operator command arguments)
   (loop for spec in (command-parameters command)
         for argument in arguments
         unless (argument-of-type-p argument (spec-type spec))
@@ -91,18 +91,18 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
 (defun plan-function-name (command-name)
   (symbolicate 'rpl- command-name))
 
-(defun check-fluent (name clause)
+(defun check-fluent-variable (name clause)
   (unless (or (assoc name *fluent-variables*) (known-variable-p name nil))
     (reject-clause "define-outcome" clause "a fluent variable, as DEFINE-FLUENTS defines")))
 
 (defun clause-form (clause)
   (case (and (consp clause) (first clause))
     (:set (destructuring-bind (fluent value) (rest clause)
-            (check-fluent fluent clause)
+            (check-fluent-variable fluent clause)
             `(list (list :set (fluent-for-part ',fluent resource) ,value))))
-    (:error (check-fluent (second clause) clause)
+    (:error (check-fluent-variable (second clause) clause)
      `(list (list :error (fluent-for-part ',(second clause) resource) err)))
-    (:pulse (check-fluent (second clause) clause)
+    (:pulse (check-fluent-variable (second clause) clause)
      `(list (list :pulse (fluent-for-part ',(second clause) resource))))
     (:when (destructuring-bind (test . clauses) (rest clause)
              `(when ,test (append ,@(mapcar #'clause-form clauses)))))
@@ -116,15 +116,15 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
         append (cond ((member kind kinds) (list (first more)))
                      ((eq :when kind) (clause-fluents (rest more) kinds)))))
 
-(defun fluent-in-plan (variable part)
+(defun plan-fluent-form (variable part)
   "Return a form for plans: the fluent in VARIABLE, or PART's fluent if VARIABLE holds a vector."
   (if (second (assoc variable *fluent-variables*)) `(vref ,variable ,part) variable))
 
-(defun fluent-form (kind clauses part)
+(defun clause-fluent-form (kind clauses part)
   "Return a form for the fluent in the first clause of KIND, :pulse or :error, in CLAUSES; NIL if
 there is no such clause. PART is the name of the command's argument for the part."
   (let ((fluent (second (assoc kind clauses))))
-    (and fluent (fluent-in-plan fluent part))))
+    (and fluent (plan-fluent-form fluent part))))
 
 (defun warn-of-argument-count (name command-name parameters forms)
   (unless (= (length parameters) (length forms))
@@ -153,23 +153,23 @@ robot. See reading 179."
                             ',(remove-duplicates (clause-fluents clauses '(:set :error))))
              collect `(note-plan-function
                        ',command-name '(,name ,@parameters)
-                       ',(fluent-form :pulse clauses (first parameters))
-                       ',(fluent-form :error clauses (first parameters))
+                       ',(clause-fluent-form :pulse clauses (first parameters))
+                       ',(clause-fluent-form :error clauses (first parameters))
                        (mapcar #'error-code-keyword
                                (command-errors (find-command ',command-name)))
                        ',(loop for fluent in (clause-fluents clauses '(:set))
-                               collect (fluent-in-plan fluent (first parameters))))
+                               collect (plan-fluent-form fluent (first parameters))))
              collect `(defun ,name ,parameters
                         ,(format nil "~A~%Returns nothing; sets ~(~{~A~^, ~}~). Arguments may be ~
                                       fluents.~:[~; (Manual C.)~]"
                                  sentence (remove-duplicates (clause-fluents clauses))
-                                 (and *marking-p* (not ours)))
-                        (command-in-plan ',name (find-command ',command-name)
-                                         (lambda (resource err &optional ,@results &rest more)
-                                           (declare (ignore more)
-                                                    (ignorable resource err ,@results))
-                                           (append ,@(mapcar #'clause-form clauses)))
-                                         (list ,@parameters)))
+                                 (and *loading-simulator-p* (not ours)))
+                        (issue-plan-command ',name (find-command ',command-name)
+                                            (lambda (resource err &optional ,@results &rest more)
+                                              (declare (ignore more)
+                                                       (ignorable resource err ,@results))
+                                              (append ,@(mapcar #'clause-form clauses)))
+                                            (list ,@parameters)))
              collect `(define-compiler-macro ,name (&whole form &rest arguments)
                         (warn-of-argument-count ',name ',command-name ',parameters arguments)
                         form))))

@@ -13,7 +13,7 @@
                 #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
                 #:timeline-tick #:check-not-secluded #:check-not-over
-                #:wake-owner #:count-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
+                #:wake-owner #:record-code-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
                 #:hog-seconds)
   (:import-from :ars-magna.run
                 #:simulation-tick #:add-observer #:remove-observer #:run-ticks
@@ -41,7 +41,8 @@
                 #:fluent-value #:fluent-name
                 #:set-value #:pulse
                 #:apply-settings #:was-read-p #:forget-reading
-                #:*interface* #:home-in-use #:note-outside-change #:*runner* #:post #:react-to-all
+                #:*default-interface* #:default-home #:note-outside-change #:*runner* #:post-entry
+                #:react-to-all
                 #:exhaust-reaction #:close-runner #:notify-at-rest #:advance-timers #:note-tick
                 #:next-wake-time #:outside-request-p #:runner-idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:skip-idle-tick #:stop-plan #:plan-runner
@@ -50,12 +51,12 @@
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
-                #:plan-deadlocked-p #:report-deadlock #:report-stillness #:task-ending-p
+                #:plan-deadlocked-p #:report-deadlock #:warn-of-outside-waits #:task-ending-p
                 #:waiting-parts #:failure-text #:misspelt-handler-text #:lisp-failure
-                #:text-of-plans #:advice-on-stillness #:fluents-awaited
+                #:waiting-plans-text #:advice-on-endless-waits #:fluents-awaited
                 #:fluent-text #:note-plan-function #:has-plan-function-p #:plan-call-text
                 #:pulse-of-command #:last-command #:last-pulse #:endless-advice
-                #:+no-fluent+ #:robots-fluent-p #:plan-backtrace #:operator-called-p
+                #:+no-fluent+ #:robot-fluent-p #:plan-backtrace #:operator-called-p
                 #:task-awaiting
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
                 #:print-tasks #:find-procedure
@@ -66,10 +67,12 @@
                 #:call-with-client-still
                 #:note-plan-trouble #:note-plans-shown #:*realm*
                 #:copy-back-values #:+root+
-                #:realm-sources #:leave-realm #:source-realm #:at-home #:entity #:entity-here
-                #:all-tasks #:task-numbered #:task-holding-value #:blocked-p #:failure-of
+                #:realm-sources #:drop-realm-references #:source-realm #:with-owned-home #:entity
+                #:entity-here
+                #:all-tasks #:task-numbered #:task-whose-variable-holds #:blocked-p #:failure-of
                 #:end-with-value
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
-                #:task-level #:evaporating-p #:reasons #:end-with-signal #:withdraw #:task-frame
+                #:task-level #:evaporating-p #:reasons #:end-with-signal #:remove-waiting-task
+                #:task-frame
                 #:entity-realm #:twin-here
                 #:note-outside-call #:current-counterpart #:advice-on-call #:advice-on-goal))

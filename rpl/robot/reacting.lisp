@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(wish serve-wish add-wish forget-wish grant-wish wishes-in-tick fork-at-rest
+(export '(wish serve-wish add-wish forget-wish grant-wish served-wish-count fork-resting-simulation
           obsolete-wish-p call-outside-reactions))
 
 ;;; A run cannot be forked inside a plan's step, since part of its state is on Lisp's stack. So a
@@ -34,23 +34,23 @@ not served."))
   "Remove WISH from its interface without serving WISH."
   (removef (interface-wishes (wish-interface wish)) wish))
 
-(defmethod withdraw (task (wish wish))
+(defmethod remove-waiting-task (task (wish wish))
   (declare (ignore task))
   (forget-wish wish))
 
 (defun grant-wish (wish value)
   "Continue the task of WISH with VALUE. The caller holds the plans."
   (forget-wish wish)
-  (at-home ((interface-runner (wish-interface wish)))
+  (with-owned-home ((interface-runner (wish-interface wish)))
     (end-with-value (wish-task wish) value)))
 
 (defun refuse-wish (wish condition)
   (let ((task (wish-task wish)))
     (forget-wish wish)
-    (at-home ((interface-runner (wish-interface wish)))
+    (with-owned-home ((interface-runner (wish-interface wish)))
       (end-with-signal task (failure-of condition task (task-frame task))))))
 
-(defun wishes-in-tick (interface)
+(defun served-wish-count (interface)
   "Return how many wishes of INTERFACE have been served in this tick."
   (let ((tick (simulation-tick (interface-simulation interface))))
     (unless (eql tick (interface-wish-tick interface))
@@ -70,7 +70,7 @@ not served."))
   (let ((wish (wish-to-serve interface)))
     (when (and wish
                (not (interface-closing-p interface))
-               (< (wishes-in-tick interface) +most-wishes+))
+               (< (served-wish-count interface) +most-wishes+))
       (let ((answer (handler-case (serve-wish wish)
                       (error (condition) (refuse-wish wish condition)))))
         (incf (interface-wishes-served interface))
@@ -86,7 +86,7 @@ this tick. Return :IDLE, or :BUDGET if work is left for the next tick."
 
 ;;; For methods of SERVE-WISH.
 
-(defun fork-at-rest (interface)
+(defun fork-resting-simulation (interface)
   "Return a fork of the simulation of INTERFACE, whose plans rest and are held by the caller."
   (in-any-case
     (progn (setf (interface-resting-p interface) t)
@@ -115,7 +115,7 @@ this tick. Return :IDLE, or :BUDGET if work is left for the next tick."
     (and (timeline-real-p (simulation-timeline simulation))
          (live-p simulation))))
 
-(defun charge-declared-time (interface)
+(defun set-thinking-charges (interface)
   (let ((timeline (simulation-timeline (interface-simulation interface))))
     (set-charges (interface-runner interface)
                  (thinking-charged-p timeline)
@@ -145,7 +145,7 @@ their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a re
             ;; By then another run may be the current one.
             (*realm* (entity-realm (interface-valve interface)))
             (*continues-in-forks-p* t))
-        (charge-declared-time interface)
+        (set-thinking-charges interface)
         (advance-timers runner (simulation-tick (interface-simulation interface)))
         (let ((outcome (with-random-state ((plans-dice interface)) (react-and-serve interface))))
           ;; If it was closed while its plans reacted, the rest is done here.
@@ -203,11 +203,11 @@ the remark on the same failure of a part in this tick."
         (remove-remark simulation remark)))
     (add-failure-remark interface :plan task failure)))
 
-(defun note-end (interface task)
+(defun handle-task-end (interface task)
   (atomic-remove task (interface-ends-requested interface))
   (cond ((eq :succeeded (task-state task))
          (warn-of-unawaited interface task)
-         (warn-of-unread interface task))
+         (warn-of-unread-error interface task))
         (t (interrupt-actions interface task)
            (add-end-remark interface task)))
   (report-end task (and (member task (interface-awaited interface) :test #'eq) t)))
@@ -224,4 +224,4 @@ the remark on the same failure of a part in this tick."
                       :slow *hog-seconds*
                       :on-post (lambda () (wake-plans-or-owner interface))
                       :attended-p (lambda () (plans-thread interface))
-                      :on-end (lambda (task) (note-end interface task)))))
+                      :on-end (lambda (task) (handle-task-end interface task)))))

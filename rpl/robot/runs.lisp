@@ -139,14 +139,14 @@ calls from outside can wake the plans."
                           (null (interface-holder interface))
                           (deadlocked-p interface))
                      (setf told t)
-                     (with-plans (interface) (report-stillness (interface-runner interface)))))
+                     (with-plans (interface) (warn-of-outside-waits (interface-runner interface)))))
               (check-wait-while-paused 'run-plan simulation)
-              (wait-and-serve over 0.2))
+              (serve-and-wait-once over 0.2))
         (asking (simulation) (remove-observer #'look simulation))))))
 
 (defun check-may-wait (interface)
   "Signal MISUSE if waiting for a plan in this thread would keep the plan itself from going on."
-  (when (holding-p interface)
+  (when (holding-plans-p interface)
     (reject-use "run-plan: a plan is at work here. Call the other plan as a step of that plan."))
   (when (eq (current-thread) (simulation-thread (interface-simulation interface)))
     (reject-use "run-plan: the simulator would wait for itself. Use begin-plan here."))
@@ -232,7 +232,7 @@ example if the run is over before the plan begins."
 (defun request-plan-end (interface task)
   "Request that the plan runner later evaporates TASK of INTERFACE, or all tasks if TASK is NIL."
   (check-not-secluded (interface-simulation interface))
-  (record-plan-action interface #'repeat-call #'repeat-end '() (and task (task-serial task)))
+  (record-plan-action interface #'repeat-call #'repeat-plan-end '() (and task (task-serial task)))
   (dolist (task (if task (list task) (tasks-of-interface interface)))
     (unless (task-over-p task) (atomic-push task (interface-ends-requested interface))))
   (stop-plan (interface-runner interface) task))
@@ -240,11 +240,11 @@ example if the run is over before the plan begins."
 (defun end-plans-of-interface (interface task)
   "Evaporate TASK of INTERFACE, or all tasks if TASK is NIL: now, or later in the plans' thread."
   (request-plan-end interface task)
-  (unless (or (holding-p interface) (plans-thread interface))
+  (unless (or (holding-plans-p interface) (plans-thread interface))
     (asking ((interface-simulation interface))
       (with-plans (interface) (react-fully interface)))))
 
-(defun repeat-end (subject)
+(defun repeat-plan-end (subject)
   "In a repeated run, end SUBJECT as in the original run: a task, or all plans of a plan runner."
   (end-plans-of-interface (usable-interface) (and (task-p subject) subject)))
 

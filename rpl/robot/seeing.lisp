@@ -12,8 +12,8 @@
     (and interface (interface-runner interface))))
 
 ;; Where none is in use, one may react.
-(defmethod home-in-use ((interface interface)) (usable-runner))
-(defmethod home-in-use ((interface null)) (usable-runner))
+(defmethod default-home ((interface interface)) (usable-runner))
+(defmethod default-home ((interface null)) (usable-runner))
 
 (defun trace-if-wanted (task)
   (when *trace-plans* (start-trace (task-runner task))))
@@ -31,9 +31,10 @@
 
 (defun call-with-plans-in-use (function)
   "Call FUNCTION with the runner of the plans in use, or with NIL. No plan goes on meanwhile."
-  (cond (*interface*
-         (note-plans-shown *interface*)
-         (with-plans (*interface*) (funcall function (interface-runner *interface*))))
+  (cond (*default-interface*
+         (note-plans-shown *default-interface*)
+         (with-plans (*default-interface*)
+           (funcall function (interface-runner *default-interface*))))
         (t (funcall function nil))))
 
 (defmethod call-with-client-still ((interface interface) function)
@@ -44,7 +45,7 @@
 (defun print-plans (&optional (stream *standard-output*) all)
   "Print the running plans to STREAM, each as a tree of tasks: what each does and waits for. If ALL
 is true, also print stacks, variables and valves: see PRINT-TASKS."
-  (if (usable-interface-p *interface*)
+  (if (usable-interface-p *default-interface*)
       (call-with-plans-in-use (lambda (runner) (print-tasks runner stream all)))
       (format stream "No plans.~%")))
 

@@ -21,7 +21,7 @@ thread, or a plan has called this function, the plans end as soon as they can."
       (in-any-case
         (remove-participant interface (interface-simulation interface))
         (removef (robot-enders (interface-robot interface)) (interface-ender interface))
-        (cond ((holding-p interface) (stop-plan (interface-runner interface)))
+        (cond ((holding-plans-p interface) (stop-plan (interface-runner interface)))
               ((plans-thread interface) (wake-plans interface))
               (t (end-plans-in-this-thread interface)))))))
 
@@ -49,7 +49,7 @@ thread, or a plan has called this function, the plans end as soon as they can."
                    (with-simulation (~A) ...), or after (simulator ~A)."
                   robot (eq (world-map world) (world-map *world*)) robot robot))))
 
-(defun must-end-for-p (interface simulation)
+(defun plans-must-end-for-p (interface simulation)
   "True if the plans of INTERFACE must end before other plans can run in SIMULATION. The plans of a
 live run go on while a headless simulation runs inside of the live run."
   (or (eq simulation (interface-simulation interface))
@@ -82,13 +82,13 @@ another robot of the same run, or if one of these plans has called RPL-INIT-ROBO
 (defun drive-in-eras (robot eras)
   "Let plans drive ROBOT, as RPL-INIT-ROBOT does, with the ERAS of tasks. Return the new interface."
   ;; Other threads may set the variable meanwhile.
-  (let ((simulation (robot-simulation robot)) (before *interface*))
+  (let ((simulation (robot-simulation robot)) (before *default-interface*))
     (record-outside-act simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
-    (when (and before (must-end-for-p before simulation)) (close-interface before))
+    (when (and before (plans-must-end-for-p before simulation)) (close-interface before))
     (make-fluents robot)
     (let ((interface (make-interface robot simulation eras (commanded-robot))))
       (attach-interface interface)
-      (setf *interface* interface)
+      (setf *default-interface* interface)
       (when (eq simulation *simulation*) (store-environment simulation))
       interface)))
 
@@ -106,7 +106,7 @@ prompt, for the robot that the prompt commands. Signals UNKNOWN-NAME. Signals MI
 in another world than the current one."
   (let* ((named (fluent-value robot))
          (robot (if (robot-p named) named (find-robot named)))
-         (before *interface*))
+         (before *default-interface*))
     (when before (warn-of-ended-plans before robot))
     (init-robot robot)
     robot))
@@ -116,11 +116,11 @@ in another world than the current one."
 (defun close-old-interface (robot options)
   "End the plans of an earlier simulation, because the simulator of ROBOT has started."
   (declare (ignore options))
-  (let ((interface *interface*))
+  (let ((interface *default-interface*))
     (when (and interface
                (not (eq (interface-simulation interface) (robot-simulation robot))))
       (unless (interface-valid-p interface) (close-interface interface))
-      (when (eq interface *interface*) (setf *interface* nil)))))
+      (when (eq interface *default-interface*) (setf *default-interface* nil)))))
 
 (add-listener *simulator-hooks* close-old-interface)
 
@@ -150,7 +150,7 @@ return true. No other thread may touch the plans meanwhile."
          (when (or (time-to-wake-p interface) (not (plans-thread-wanted-p interface)))
            (wake-plans interface)))
         ((not (plans-thread-wanted-p interface))
-         (count-moment (simulation-timeline simulation))
+         (record-code-moment (simulation-timeline simulation))
          (if (live-p simulation)
              (with-plans (interface)
                (unless (advance-without-reaction interface) (react-fully interface)))
@@ -166,16 +166,16 @@ return true. No other thread may touch the plans meanwhile."
 ;; What was left ready by a thread that has ended from outside waits for the next tick.
 (defmethod participant-busy-p ((interface interface) simulation)
   (cond ((plans-thread interface) (wake-tick interface))
-        ((ready-p interface))
+        ((plans-ready-p interface))
         ((wish-to-serve interface) t)
         ((live-p simulation)
          (and (plans-thread-wanted-p interface) (tasks-of-interface interface) t))))
 
 ;; A thread that applies posts holds the plans, and publishes what is left before it releases them.
 (defmethod participant-at-work-p ((interface interface))
-  (or (ready-p interface)
+  (or (plans-ready-p interface)
       (interface-holder interface)
-      (ready-p interface)))
+      (plans-ready-p interface)))
 
 (defmethod participant-reseed ((interface interface) seed)
   (reseed-runner (interface-runner interface) seed))

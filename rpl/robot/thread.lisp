@@ -14,7 +14,7 @@
   (steps 0 :read-only t)
   (task nil :read-only t))
 
-(defun sample-thread (interface thread)
+(defun take-thread-sample (interface thread)
   (let ((*runner* (interface-runner interface)))
     (make-sample (interface-rests interface)
                  (runner-steps *runner*)
@@ -47,7 +47,7 @@
 (defun abort-step (interface steps)
   "Abort the Lisp code of INTERFACE's plan in this thread, if the plans are still at step STEPS."
   (when (and (eql steps (runner-steps (interface-runner interface)))
-             (holding-p interface))
+             (holding-plans-p interface))
     (abort)))
 
 (defun end-blocking-plan (interface thread sample stuck-p)
@@ -64,7 +64,7 @@ plans that block THREAD, and end such plans if their end was requested. CALLS te
 code THREAD is running."
   (loop with earlier = nil and stuck = 1 and busy = 1
         until (wait-on-semaphore ended (/ (hog-seconds) 2))
-        do (let ((sample (sample-thread interface thread)))
+        do (let ((sample (take-thread-sample interface thread)))
              (setf stuck (if (stuck-since-p sample earlier) (1+ stuck) 1)
                    busy (if (busy-since-p sample earlier) (1+ busy) 1)
                    earlier sample
@@ -97,7 +97,7 @@ to run; NIL if the reaction was aborted."
            (outcome (call-user-code #'react-fully (participant-origin interface) interface)))
       (cond ((and (tasks-of-interface interface) (not closing-p))
              (if (and (not (live-p (interface-simulation interface)))
-                      (or (eq :idle outcome) (waits-for-tick-p interface)))
+                      (or (eq :idle outcome) (must-wait-for-tick-p interface)))
                  (run-plans-in-ticks interface)
                  outcome))
             (t (setf (interface-thread interface) nil)
@@ -117,7 +117,7 @@ to run; NIL if the reaction was aborted."
   (wait-on-semaphore (interface-wake-up interface) seconds)
   (setf (interface-tick-wanted-p interface) nil))
 
-(defun run-thread (interface)
+(defun run-plans-thread (interface)
   (loop
     (loop while (plusp (interface-wanted interface)) do (yield-thread))
     (await-postponed-fork (interface-simulation interface))
@@ -128,7 +128,7 @@ to run; NIL if the reaction was aborted."
                ;; With a listener for messages, as at the prompt, that is reported anyway.
                (unless (message-queue-listener *message-queue*) (warn-of-stranded-plans interface))
                (rest-until-woken interface)))
-      (:budget (when (or (waits-for-tick-p interface) (wish-to-serve interface))
+      (:budget (when (or (must-wait-for-tick-p interface) (wish-to-serve interface))
                  (setf (interface-tick-wanted-p interface) t)
                  (rest-until-woken interface)))
       ((nil) (rest-until-woken interface 0.05)))))
@@ -155,7 +155,7 @@ Do nothing if the start of this thread was given up."
                  (call-with-thread-bindings simulation
                                 (lambda ()
                                   (call-as-plans-thread
-                                   interface (lambda () (run-thread interface)))))
+                                   interface (lambda () (run-plans-thread interface)))))
                  (signal-semaphore ended))))
            (name (control)
              (format nil control (interface-robot interface))))

@@ -123,10 +123,10 @@ thread calls this function."
       (setf settings (apply (action-outcome action) (action-resource action) err results))
       (let ((answer (make-answer action err settings (final-answer-p (action-command action) err))))
         (add-answer answer interface)
-        (post (interface-runner interface) (lambda () (apply-answer answer interface)))
+        (post-entry (interface-runner interface) (lambda () (apply-answer answer interface)))
         (when (answer-last-p answer) (setf (action-over-p action) t))))))
 
-(defun continuation-of (interface action)
+(defun make-action-continuation (interface action)
   (setf (action-continuation action)
         (lambda (err resource &rest results)
           (declare (ignore resource))
@@ -195,7 +195,8 @@ because the robot is gone, end the plan at work."
       (progn (call-on-robot interface
                             (lambda ()
                               (apply (command-name command) resource
-                                     (append arguments (list (continuation-of interface action))))))
+                                     (append arguments
+                                             (list (make-action-continuation interface action))))))
              (setf issued-p t))
       (unless issued-p (forget-action action interface)))
     (interrupt-older-actions interface resource :except action)))

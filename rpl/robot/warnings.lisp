@@ -23,18 +23,18 @@ functions that OBJECT calls. SEEN is a table of objects that have been examined.
          (setf (gethash object seen) t)
          (may-set-fluents-p (fdefinition object) seen))))
 
-(defvar *known-kickers* (make-hash-table :test 'eq :weakness :key :synchronized t)
+(defvar *kicker-sets-fluents-cache* (make-hash-table :test 'eq :weakness :key :synchronized t)
   "A table of alists by interface. Each alist says of kickers whether they may change fluents.")
 
 (defun kicker-sets-fluents-p (kicker interface)
-  (let ((known (assoc kicker (gethash interface *known-kickers*) :test #'eq)))
+  (let ((known (assoc kicker (gethash interface *kicker-sets-fluents-cache*) :test #'eq)))
     (if known
         (cdr known)
         (let* ((seen (make-hash-table :test 'eq))
                (answer (and (or (may-set-fluents-p (kicker-body kicker) seen)
                                 (may-set-fluents-p (kicker-test kicker) seen))
                             t)))
-          (push (cons kicker answer) (gethash interface *known-kickers*))
+          (push (cons kicker answer) (gethash interface *kicker-sets-fluents-cache*))
           answer))))
 
 (defun kickers-may-set-fluents-p (interface)
@@ -96,7 +96,7 @@ supersedes that of an earlier end of the same command."
         ;; A task that waits for one of them will be woken.
         (when (still-unread-p unread) (push unread (interface-unread interface)))))))
 
-(defun warn-of-unread (interface task)
+(defun warn-of-unread-error (interface task)
   "Warn once if a command of TASK failed, and TASK succeeded without reading the error."
   (let* ((serial (task-serial task))
          (all (interface-unread interface))
@@ -159,7 +159,7 @@ supersedes that of an earlier end of the same command."
   "True if TASK waits only for fluents that only the robot changes, or for an unchanging value."
   (or (eq +no-fluent+ (task-awaiting task))
       (let ((fluents (fluents-awaited (list task))))
-        (and fluents (every #'robots-fluent-p fluents)))))
+        (and fluents (every #'robot-fluent-p fluents)))))
 
 (defun stranded-parts (interface task)
   "Return the parts of TASK, a plan of INTERFACE, that wait in vain; NIL if TASK may go on."
@@ -171,7 +171,7 @@ supersedes that of an earlier end of the same command."
 
 (defun stranded-task-text (task parts)
   (format nil "~A, which nothing in the run will change.~A"
-          (text-of-plans (list task)) (advice-on-stillness parts)))
+          (waiting-plans-text (list task)) (advice-on-endless-waits parts)))
 
 (defun warn-of-stranded (interface task parts)
   "Warn once that TASK, a plan of INTERFACE, will not go on because PARTS of TASK wait in vain."
@@ -191,7 +191,7 @@ supersedes that of an earlier end of the same command."
   "True if plans of INTERFACE wait and nothing can ever wake them. For any thread."
   (and (null (blocking-task interface))
        ;; What is published tells most cases apart without the lock.
-       (not (ready-p interface))
+       (not (plans-ready-p interface))
        (with-plans (interface) (plan-deadlocked-p (interface-runner interface)))))
 
 (defun stranded-plans (interface)
@@ -222,7 +222,7 @@ supersedes that of an earlier end of the same command."
 ;;; so, and RUN-UNTIL, PRINT-PLANS and the like do, see RECORD-PROGRESS-CHECKED. What is left are
 ;;; plans that would have ended, had more ticks passed.
 
-(defun cut-off-p (interface task)
+(defun plan-cut-off-p (interface task)
   "True if TASK, of the plans of INTERFACE, is under way and would have ended by itself."
   (not (or (task-parent task)
            (task-over-p task)
@@ -238,5 +238,5 @@ supersedes that of an earlier end of the same command."
   (when (interface-valid-p interface)
     (with-plans (interface)
       (loop for task in (tasks-of-interface interface)
-            when (cut-off-p interface task)
+            when (plan-cut-off-p interface task)
               collect (format nil "the plan ~A" (task-label task))))))

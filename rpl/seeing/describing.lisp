@@ -19,7 +19,7 @@ TASK is over."
 
 ;;; Variables.
 
-(defun environments (environment)
+(defun environment-chain (environment)
   "Return a list of ENVIRONMENT and the environments around it, innermost first."
   (loop for each = environment then (svref each 0)
         while (plusp (length each)) collect each))
@@ -41,7 +41,7 @@ with the same name, only the last is included."
 (defun visible-levels (frame)
   "Return the variables visible in FRAME, innermost first: lists (environment variable...). Each
 variable is a list (name value)."
-  (loop for environment in (environments (frame-environment frame))
+  (loop for environment in (environment-chain (frame-environment frame))
         for names in (frame-names frame)
         collect (cons environment
                       (remove-if (lambda (variable) (member (first variable) shadowed))
@@ -60,7 +60,7 @@ variable is a list (name value)."
                   collect (list (form-text name) (form-text value 30)))
             (form-text (node-form (frame-node frame)) 40))))
 
-(defun visible-variables (frames)
+(defun visible-variables-by-environment (frames)
   "Return a table. Each key is an environment of FRAMES; its value lists those variables of the
 environment that the innermost frame with it sees. FRAMES begin with the innermost frame."
   (let ((table (make-hash-table :test 'eq)))
@@ -72,17 +72,17 @@ environment that the innermost frame with it sees. FRAMES begin with the innermo
 (defun stack-entries (task)
   "Return a list of lists (form variable...) for the expressions that TASK is evaluating, innermost
 first. Each variable, a list (name value), comes with the outermost expression where it is visible."
-  (let ((visible (visible-variables (frame-chain (task-frame task))))
+  (let ((visible (visible-variables-by-environment (frame-chain (task-frame task))))
         (around (and (task-parent task) (task-frame (task-parent task))))
         (known '())
         (entries '()))
     ;; What it has from the task that it is part of.
-    (when around (setf known (environments (frame-environment around))))
-    (dolist (frames (reverse (frame-runs (task-frame task))) entries)
-      (let ((new (set-difference (environments (frame-environment (first frames))) known)))
+    (when around (setf known (environment-chain (frame-environment around))))
+    (dolist (frames (reverse (frames-by-expression (task-frame task))) entries)
+      (let ((new (set-difference (environment-chain (frame-environment (first frames))) known)))
         (setf known (append new known))
         (push (cons (current-form (frame-node (first frames)) (first frames))
-                    (loop for environment in (environments (frame-environment (first frames)))
+                    (loop for environment in (environment-chain (frame-environment (first frames)))
                           when (member environment new)
                             append (gethash environment visible)))
               entries)))))
@@ -97,7 +97,7 @@ innermost first, without shadowed variables. Return () when TASK is over."
 
 ;;;; What DESCRIBE tells
 
-(defun write-lines (stream &rest items)
+(defun write-labelled-lines (stream &rest items)
   "For each name in ITEMS and the text after it, write a line to STREAM unless the text is NIL."
   (loop for (name text) on items by #'cddr
         when text do (format stream "  ~A: ~A~%" name text)))
@@ -109,15 +109,15 @@ innermost first, without shadowed variables. Return () when TASK is over."
 
 (defmethod describe-object ((task task) stream)
   (format stream "~A~%" (form-text task 100))
-  (write-lines stream
-               "State" (task-state-text task)
-               "Part of" (and (task-parent task) (form-text (task-parent task) 70))
-               "Path" (format nil "~{~A~^ > ~}" (task-path task))
-               "Level" (and (plusp (task-level task)) (task-level task))
-               "Waits for" (and (task-awaits task)
-                                (format nil "~A, since tick ~D" (task-awaits task)
-                                        (task-since task)))
-               "Result" (task-outcome-text task))
+  (write-labelled-lines stream
+                        "State" (task-state-text task)
+                        "Part of" (and (task-parent task) (form-text (task-parent task) 70))
+                        "Path" (format nil "~{~A~^ > ~}" (task-path task))
+                        "Level" (and (plusp (task-level task)) (task-level task))
+                        "Waits for" (and (task-awaits task)
+                                         (format nil "~A, since tick ~D" (task-awaits task)
+                                                 (task-since task)))
+                        "Result" (task-outcome-text task))
   (unless (task-over-p task)
     (format stream "  Stack:~%")
     (write-stack task 4 stream)
@@ -133,31 +133,34 @@ innermost first, without shadowed variables. Return () when TASK is over."
   (let ((sources (remove fluent (base-fluents fluent)))
         (clients (loop for client in (fluent-watchers fluent)
                        when (task-p client) collect (form-text client 70))))
-    (write-lines stream
-                 "Name" (form-text (fluent-name fluent))
-                 "Value" (handler-case (form-text (fluent-value fluent) 70)
-                           (error (condition)
-                             (format nil "error: ~A" (printable-report condition))))
-                 "Computed from" (and sources
-                                      (format nil "~{~A~^, ~}" (mapcar #'form-text sources)))
-                 "Waited for by" (and clients (format nil "~{~A~^, ~}" clients)))))
+    (write-labelled-lines stream
+                          "Name" (form-text (fluent-name fluent))
+                          "Value" (handler-case (form-text (fluent-value fluent) 70)
+                                    (error (condition)
+                                      (format nil "error: ~A" (printable-report condition))))
+                          "Computed from" (and sources
+                                               (format nil "~{~A~^, ~}"
+                                                       (mapcar #'form-text sources)))
+                          "Waited for by" (and clients (format nil "~{~A~^, ~}" clients)))))
 
 (defmethod describe-object ((valve valve) stream)
   (format stream "~A~%" (form-text valve 100))
-  (write-lines stream
-               "Owner" (if (valve-owner valve) (form-text (valve-owner valve) 70) "nobody")
-               "Queue" (and (valve-requests valve)
-                            (format nil "~{~A~^, ~}"
-                                    (loop for task in (valve-requests valve)
-                                          collect (form-text task 70))))))
+  (write-labelled-lines stream
+                        "Owner" (if (valve-owner valve) (form-text (valve-owner valve) 70) "nobody")
+                        "Queue" (and (valve-requests valve)
+                                     (format nil "~{~A~^, ~}"
+                                             (loop for task in (valve-requests valve)
+                                                   collect (form-text task 70))))))
 
 (defmethod describe-object ((procedure procedure) stream)
   (format stream "~A~%" (form-text procedure 100))
   (let ((name (procedure-name procedure)))
-    (write-lines stream
-                 "Called as" (format nil "(~A~{ ~A~})" (if name (form-text name) "call-plan ...")
-                                     (mapcar #'form-text (procedure-lambda-list procedure)))
-                 "Defined" (if (procedure-body procedure) nil "not yet, or no longer")
-                 "Documentation" (and name (documentation name 'function))
-                 "Body" (and (procedure-body procedure)
-                             (form-text (node-form (procedure-body procedure)) 200)))))
+    (write-labelled-lines stream
+                          "Called as" (format nil "(~A~{ ~A~})"
+                                              (if name (form-text name) "call-plan ...")
+                                              (mapcar #'form-text
+                                                      (procedure-lambda-list procedure)))
+                          "Defined" (if (procedure-body procedure) nil "not yet, or no longer")
+                          "Documentation" (and name (documentation name 'function))
+                          "Body" (and (procedure-body procedure)
+                                      (form-text (node-form (procedure-body procedure)) 200)))))

@@ -162,7 +162,7 @@ expression, by default a short text."
   (setf (bar-outcome bar) outcome
         (bar-end bar) tick))
 
-(defun note-in-bar (bar entry)
+(defun add-entry-to-bar (bar entry)
   "Add ENTRY, an entry of the task of BAR, to BAR. Starts and commands are handled elsewhere."
   (let ((tick (trace-entry-tick entry)))
     (case (trace-entry-event entry)
@@ -196,7 +196,7 @@ expression, by default a short text."
                                  (procedure-name-p (first form))))
                           stack)))
 
-(defun begin-command (bar entry commands)
+(defun begin-command-span (bar entry commands)
   (let* ((issue (trace-entry-subject entry))
          (span (make-span :command (trace-entry-tick entry)
                           (whole-form-text (cons (issue-name issue) (issue-arguments issue))))))
@@ -204,7 +204,7 @@ expression, by default a short text."
           (gethash (trace-entry-subject entry) commands) span)
     (push span (bar-commands bar))))
 
-(defun end-command (entry commands)
+(defun end-command-span (entry commands)
   (let ((span (gethash (trace-entry-subject entry) commands)))
     (when span
       (setf (span-end span) (trace-entry-tick entry)
@@ -263,8 +263,8 @@ tick of TRACE."
                (:start (setf bar (begin-bar entry (gethash (trace-entry-value entry) bars))
                              (gethash (trace-entry-task entry) bars) bar)
                 (unless (bar-parent bar) (push bar roots)))
-               (:command (when bar (begin-command bar entry commands)))
-               (:answer (end-command entry commands))
-               (t (when bar (note-in-bar bar entry)))))
+               (:command (when bar (begin-command-span bar entry commands)))
+               (:answer (end-command-span entry commands))
+               (t (when bar (add-entry-to-bar bar entry)))))
     (dolist (bar roots) (finish-bar bar (max last (or now last))))
     (nreverse roots)))

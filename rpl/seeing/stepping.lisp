@@ -55,13 +55,13 @@ none. Without an interactive debugger, such failures are messages.")
                  (and (typep type '(or symbol cons)) (failure-matches-p failure type)))
                (if (and (consp types) (not (eq 'or (first types)))) types (list types))))))
 
-(defun consider-break (failure task frame)
+(defun break-if-wanted (failure task frame)
   (when (break-wanted-p failure)
     (with-simple-restart (continue "Let the failure happen.")
       (enter-break (make-condition 'plan-break :text (printable-report failure) :task task
                                                 :frame frame)))))
 
-(add-listener *failure-hooks* consider-break)
+(add-listener *failure-hooks* break-if-wanted)
 
 ;;; A runner with plans to be stepped has a STEPPER, which is called before each step of any of its
 ;;; tasks (see INSTRUMENTED-STEP); other runners cost nothing. Only steps that begin an expression
@@ -142,7 +142,7 @@ this task."
       (let ((outer (if leaf-p frame (frame-up frame))))
         (resume-stepping course :over task (and outer (frame-up outer)))))))
 
-(defun consider-stop (courses task frame)
+(defun stop-if-wanted (courses task frame)
   "Stop TASK before its step at FRAME, if one of COURSES says so."
   (let ((course (some (lambda (whole) (find whole courses :key #'stepping-course-task))
                       (lineage task))))
@@ -171,7 +171,7 @@ interactive debugger, a stop is a message, and the task goes on. Returns nothing
     (setf (runner-stepper runner)
           (and courses
                (lambda (task frame)
-                 (if task (consider-stop courses task frame) courses))))
+                 (if task (stop-if-wanted courses task frame) courses))))
     (values)))
 
 (defun step-if-wanted (task)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(runner-in-use runner-to-show task-holding-value image-of-tasks runner-change-mark
+(export '(runner-in-use runner-to-show task-whose-variable-holds image-of-tasks runner-change-mark
           task-image))
 
 (defgeneric runner-in-use (interface)
@@ -15,16 +15,17 @@ the running plan, or else the runner in use. Signals MISUSE without a runner."
   (or (cond ((task-p subject) (task-runner subject))
             ((typep subject 'plan-runner) subject)
             (*runner*)
-            (t (runner-in-use *interface*)))
+            (t (runner-in-use *default-interface*)))
       (reject-use "No plans have run here. Start one first: (begin-plan ...), or the line PLAN at ~
                    the prompt.")))
 
-(defun task-holding-value (value runner)
+(defun task-whose-variable-holds (value runner)
   "Return a task of RUNNER, and the name of its variable that is or contains VALUE; or NIL."
   (dolist (task (all-tasks runner) nil)
     (loop for (nil . variables) in (stack-entries task)
-          for (name) = (find-if (lambda (variable) (holds-p (second variable) value)) variables)
-          do (when name (return-from task-holding-value (values task name))))))
+          for (name) = (find-if (lambda (variable) (contains-object-p (second variable) value))
+                                variables)
+          do (when name (return-from task-whose-variable-holds (values task name))))))
 
 (defun valves-of-task (task)
   (flet ((valves-in (object)
@@ -95,7 +96,7 @@ of many the innermost" :export)
 
 ;;; A task.
 
-(defun task-look (task)
+(defun task-display-state (task)
   (cond ((evaporating-p task) (if (task-cleaning task) :cleaning :ending))
         ((blocked-p task) :blocked)
         ((task-cleaning task) :cleaning)
@@ -107,7 +108,7 @@ of many the innermost" :export)
 
 (defun image-of-task (task depth folded-p)
   (make-task-image :serial (task-serial task) :depth depth
-                   :look (task-look task) :state (task-state-text task)
+                   :look (task-display-state task) :state (task-state-text task)
                    :name (and (task-name task) (task-label task))
                    :form (form-text (task-form task) 100)
                    :calls (loop for call in (last (plan-calls-in (task-stack task)) +most-calls+)

@@ -7,7 +7,7 @@
 ;;; Effects follow their causes in the trace at once: a wake-up is due to the last change before it
 ;;; of what was waited for, the end of a wait for parts to the last part that ended.
 
-(defparameter *longest-chain* 12 "How many steps of a task's history WHY tells at most.")
+(defparameter *why-event-limit* 12 "How many steps of a task's history WHY tells at most.")
 
 (defun short-form-text (form) (form-text form 60))
 
@@ -181,9 +181,9 @@ empty string if the task had not begun."
                 (agent-description (trace-entry-agent start) trace)))))
 
 (defun shorten-sentences (sentences)
-  (let ((more (- (length sentences) *longest-chain*)))
+  (let ((more (- (length sentences) *why-event-limit*)))
     (if (plusp more)
-        (append (subseq sentences 0 *longest-chain*)
+        (append (subseq sentences 0 *why-event-limit*)
                 (list (format nil "Before that, ~D more events happened to the task; TASK-HISTORY ~
                                    lists them."
                               more)))

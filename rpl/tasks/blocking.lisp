@@ -20,7 +20,7 @@
   (let ((gate (task-gate task)))
     (cond ((and gate (gate-holds gate))
            (park task gate)
-           (report-circle task)
+           (report-wait-cycle task)
            +parked+)
           (t (setf (task-gate task) nil)
              (note-status task :running)
@@ -39,7 +39,7 @@
 (defmethod awaited-text ((gate gate))
   (format nil "~{~A~^ and ~}" (mapcar #'awaited-text (reverse (gate-holds gate)))))
 
-(defun at-start-p (task)
+(defun task-at-start-p (task)
   "True if TASK is ready but has not taken its first step."
   (let ((frame (task-frame task)))
     (and (eq (task-state task) :ready)
@@ -55,7 +55,7 @@
   "Keep TASK from starting until RELEASE-HOLD with HOLD. Signals MISUSE if TASK has started."
   (when (null (task-gate task))
     (unless (eq (task-state task) :created)
-      (unless (at-start-p task)
+      (unless (task-at-start-p task)
         (reject-use "~A has started already, so nothing can be ordered ~
                      before it." (task-label task)))
       (put-gate task))
@@ -95,7 +95,7 @@ itself, innermost first. Leave out parts that were stopped before."
       (when (block-hook-p (frame-data frame))
         (funcall (block-hook-function (frame-data frame)) task frame)))))
 
-(defun interrupt-parts (task)
+(defun request-yield-of-part (task)
   "If the running task is a part of TASK, let it yield after this step."
   (let* ((runner (task-runner task))
          (current (runner-current runner)))
@@ -112,7 +112,7 @@ TASK is shown as suspended."
     (when (under-way-p task)
       (incf (runner-blocks (task-runner task)))
       (note-event task :block)
-      (interrupt-parts task)
+      (request-yield-of-part task)
       (unless blocked (notify-blocked-parts task)))))
 
 (defun unblock-task (task &optional suspension)
@@ -123,7 +123,7 @@ TASK is shown as suspended."
     (decf (runner-blocks (task-runner task)))
     (unless (plusp (task-blocked task)) (note-event task :unblock))
     (note-status task :running)
-    (release-held (task-runner task))))
+    (requeue-held-tasks (task-runner task))))
 
 (defun check-same-runner (task other)
   "Signal MISUSE if TASK, the running task, and OTHER belong to different plan runners."
@@ -140,7 +140,7 @@ Otherwise post FUNCTION for the next reaction. FUNCTION does the work of WORD on
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)
-             (post runner function))))
+             (post-entry runner function))))
   task)
 
 (addition suspend)

@@ -2,9 +2,10 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(shape-of shape-text unknown-keyword-text arguments-misfit-text note-plan-function
+(export '(lambda-list-shape lambda-list-text unknown-keyword-text arguments-misfit-text
+                            note-plan-function
           has-plan-function-p plan-call-text wait-for-end-text last-command last-pulse
-          plan-function-p results-of-command pulse-of-command fluent-of-code))
+          plan-function-p results-of-command pulse-of-command fluent-of-error-code))
 
 (define-record (shape (:constructor make-shape (least most fixed keys open)))
   "The number of arguments, LEAST to MOST, and the keywords that a function or plan takes."
@@ -20,7 +21,7 @@
     (cond ((consp name) (first name))
           (t (make-keyword name)))))
 
-(defun shape-of (lambda-list)
+(defun lambda-list-shape (lambda-list)
   "Return the shape of LAMBDA-LIST, an ordinary lambda list or that of a function type."
   (let ((mode nil) (least 0) (optional 0) (keys '()) (seen '()))
     (dolist (parameter lambda-list)
@@ -37,7 +38,7 @@
                 (if (member '&key seen) (nreverse keys) :none)
                 (member '&allow-other-keys seen))))
 
-(defun shape-text (lambda-list)
+(defun lambda-list-text (lambda-list)
   "Return LAMBDA-LIST as text, in lower case."
   (printing-text ()
     (let ((*print-case* :downcase) (*print-pretty* nil))
@@ -85,7 +86,7 @@ has one of CODES if the command failed, or NIL. RESULTS are forms of the fluents
   "True if NAME is the name of a plan function for a command."
   (and (symbolp name) (get name 'end) t))
 
-(defun fluent-of-code (name code)
+(defun fluent-of-error-code (name code)
   "Return the form of the fluent that is set if a command of function NAME ends with CODE; or NIL."
   (destructuring-bind (&optional fluent codes) (and (symbolp name) (get name 'codes))
     (and (symbolp code) (member code codes :test #'same-name-p) fluent)))

@@ -58,7 +58,7 @@ the failure as steps that take as long, so that a plan that only fails uses up i
 ;;; even between two changes that belong together. Only what tasks contain is reliable then: their
 ;;; parents, states and frames. Everything else, such as queues, timers and watchers, is rebuilt.
 
-(defun live-parts (task)
+(defun repair-live-parts (task)
   "Return TASK and its parts that are not over, and repair the links between them."
   (let ((children (loop for child = (task-newest-child task) then (task-older child)
                         repeat 1000000
@@ -71,7 +71,7 @@ the failure as steps that take as long, so that a plan that only fails uses up i
           for previous = child
           do (setf (task-older child) older
                    (task-newer child) newer))
-    (cons task (mapcan #'live-parts children))))
+    (cons task (mapcan #'repair-live-parts children))))
 
 (defun repair-queues (runner tasks)
   "Rebuild the ready queues of RUNNER from TASKS, all its tasks. Only ready tasks are queued."
@@ -132,7 +132,7 @@ no more parts."
 (defun repair-runner (runner)
   "Make the state of RUNNER consistent, wherever RUNNER was interrupted."
   (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
-  (let ((tasks (mapcan #'live-parts (plan-runner-tasks runner))))
+  (let ((tasks (mapcan #'repair-live-parts (plan-runner-tasks runner))))
     (repair-queues runner tasks)
     (repair-timers runner tasks)
     (repair-watchers runner tasks)
@@ -141,7 +141,7 @@ no more parts."
       (when (and (task-ending-p task) (not (task-over-p task))
                  (null (task-signal task)) (null (task-cleaning task)))
         (stop-waiting task)
-        (end-parts task)))))
+        (evaporate-with-parts task)))))
 
 ;;; An error in a leaf becomes a failure of its task. While *BREAK-ON-USER-ERROR* is true and an
 ;;; interactive debugger is available, the debugger comes first. Its restarts run the leaf again,
@@ -150,15 +150,15 @@ no more parts."
 
 ;;; What happens to the task.
 
-(defun current-failure (runner condition)
+(defun failure-of-current-task (runner condition)
   (let ((task (runner-current runner)))
     (failure-of condition task (task-frame task))))
 
-(defun fail-current (runner trouble)
+(defun fail-current-task (runner trouble)
   "Let the running task of RUNNER fail with TROUBLE, a failure or a lack of memory."
   (let ((task (runner-current runner)))
     (when (typep trouble 'storage-condition) (recover-memory trouble))
-    (let ((failure (current-failure runner trouble)))
+    (let ((failure (failure-of-current-task runner trouble)))
       (cond ((task-newest-child task)   ; The step was starting parts.
              (setf (task-state task) :waiting)
              (end-with-signal task failure))
@@ -244,12 +244,12 @@ the trouble it met, and whether the step may have stopped inside the simulator's
                (leave () (meet :leave))
                (fail ()
                  ;; A failure keeps the backtrace of where it is made. Without room for one, that
-                 ;; waits until there is: see FAIL-CURRENT.
+                 ;; waits until there is: see FAIL-CURRENT-TASK.
                  (unless (typep trouble '(or plan-failure storage-condition))
-                   (setf trouble (current-failure runner (or trouble (make-failure '())))))
+                   (setf trouble (failure-of-current-task runner (or trouble (make-failure '())))))
                  (meet :fail))
                (note (condition)
-                 (when (let-callers-handle condition) (setf anywhere-p t))
+                 (when (signal-to-callers-first condition) (setf anywhere-p t))
                  ;; Without a task, a post is applied; its trouble is the caller's.
                  (when (running-task runner)
                    (setf trouble condition)
@@ -274,7 +274,7 @@ the trouble it met, and whether the step may have stopped inside the simulator's
                     (call-with-plan-restarts runner function #'fail #'end #'leave)))
                 anywhere-p)))))
 
-(defun call-with-care (runner function)
+(defun call-handling-trouble (runner function)
   "Call FUNCTION with RUNNER and return its value. If the step of a task met trouble, end or fail
 that task and return NIL."
   (let ((outcome nil) (result nil) (anywhere-p nil))
@@ -284,6 +284,6 @@ that task and return NIL."
             ((or anywhere-p (eq outcome :end)) (repair-runner runner))))
     (ecase outcome
       (:done result)
-      (:fail (fail-current runner result) nil)
+      (:fail (fail-current-task runner result) nil)
       (:end (report-abort runner) (end-current-plan runner) nil)
       (:leave (end-current-plan runner) nil))))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(end-with-value complete-when-alone end-with-signal fail-or-escape receive-signal
-          status-word stop-waiting unwind withdraw))
+          status-word stop-waiting unwind remove-waiting-task))
 
 ;;; A task that ends notifies the construct that it is part of, which may then end too, and so on
 ;;; up. A task evaporates at once, unless something in it has to be cleaned up first.
@@ -33,18 +33,18 @@
   (decf (runner-alive (the plan-runner (task-runner task))))
   (when (plusp (task-blocked task))
     (decf (runner-blocks (task-runner task)) (task-blocked task))
-    (release-held (task-runner task)))
+    (requeue-held-tasks (task-runner task)))
   (note-status task state)
   (let ((parent (task-parent task)))
     (cond (parent
            (unlink-child task)
-           (child-over parent task how result)
+           (notify-parent-of-end parent task how result)
            (warn-of-remaining-cycle parent))
           (t (let ((runner (task-runner task)))
                (setf (runner-roots runner) (remove task (runner-roots runner)))
                (funcall (runner-on-end runner) task))))))
 
-(defun child-over (parent child how result)
+(defun notify-parent-of-end (parent child how result)
   "Notify PARENT that CHILD has ended. If PARENT has a signal, only its last child's end matters."
   (cond ((null (task-signal parent))
          (let* ((frame (task-frame parent))
@@ -104,7 +104,7 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
 
 ;;; Evaporating.
 
-(defgeneric withdraw (task awaited)
+(defgeneric remove-waiting-task (task awaited)
   (:documentation "Remove TASK from the tasks that wait for AWAITED.")
   (:method (task awaited) (declare (ignore task awaited))))
 
@@ -114,10 +114,10 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
         (timer (shiftf (task-timer task) nil)))
     (cond ((null awaited))
           ((watcher-p awaited) (unwatch awaited))
-          (t (withdraw task awaited)))
+          (t (remove-waiting-task task awaited)))
     (when timer (cancel-timer timer (runner-timers (task-runner task))))))
 
-(defun release-held (runner)
+(defun requeue-held-tasks (runner)
   "Queue again those ready tasks of RUNNER that were put aside because they were blocked."
   (dolist (task (nreverse (shiftf (runner-held runner) '())))
     (when (eq (task-state task) :ready) (make-ready task))))
@@ -132,8 +132,8 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
               (task-value task) value)
         (cond (queued                   ; but perhaps put aside
                (setf (task-round task) 0)
-               (release-spent (task-runner task))
-               (release-held (task-runner task)))
+               (requeue-spent-tasks (task-runner task))
+               (requeue-held-tasks (task-runner task)))
               (t (make-ready task)))))))
 
 (defun evaporate-children (task)
@@ -169,11 +169,11 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
          (setf (runner-mask (task-runner task))
                (logior +interrupt+ (runner-mask (task-runner task)))))
         (t (stop-waiting task)
-           (end-parts task)))
+           (evaporate-with-parts task)))
   ;; A blocked task may run again to clean up.
-  (when (runner-held (task-runner task)) (release-held (task-runner task))))
+  (when (runner-held (task-runner task)) (requeue-held-tasks (task-runner task))))
 
-(defun end-parts (task)
+(defun evaporate-with-parts (task)
   "Evaporate the children of TASK, and then TASK. TASK must not be running."
   (cond ((task-newest-child task)
          (setf (task-signal task) :evaporate)
@@ -201,9 +201,9 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
 
 (defun give-up-cleanup (task)
   "Abandon the cleanup of TASK that is in progress. Queue a warning."
-  (warn-notably "The cleanup " (form-text (task-form task)) " in " (task-label task)
+  (queue-notable-warning "The cleanup " (form-text (task-form task)) " in " (task-label task)
                " was given up at tick " (runner-tick (task-runner task)) ".")
   (setf (task-ending-p task) t)
   (let ((*asker* "the limit of its cleanup"))
     (stop-waiting task)
-    (end-parts task)))
+    (evaporate-with-parts task)))

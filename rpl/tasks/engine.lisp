@@ -55,7 +55,7 @@ reaction before the heap. With a budget of steps, the start of a plan counts as 
 the task, which runs at the next reaction."
   (multiple-value-bind (body environment) (apply #'enter-plan plan arguments)
     (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
-      (at-home (runner)
+      (with-owned-home (runner)
         (let ((task (spawn nil body environment 0 0 (make-task name body))))
           (count-slow-step +steps-of-start+ runner)
           (push task (runner-roots runner))
@@ -88,7 +88,7 @@ RUN-READY does. If the budget of a tick ends during a round, the round goes on i
 that no task loses its turn."
   (unless (shiftf (runner-broken-off-p runner) nil)
     (incf (runner-round runner)))
-  (let ((outcome (loop thereis (call-with-care runner #'run-ready))))
+  (let ((outcome (loop thereis (call-handling-trouble runner #'run-ready))))
     (when (and (eq outcome :budget) (runner-charged-p runner))
       (setf (runner-broken-off-p runner) t))
     outcome))
@@ -108,23 +108,24 @@ that no task loses its turn."
     (let ((outcome (run-round runner)))
       (cond ((eq outcome :budget) (return :budget))
             ((apply-due-batch runner))
-            ((runner-spent runner) (release-spent runner))
+            ((runner-spent runner) (requeue-spent-tasks runner))
             (t (return :idle))))))
 
-(defun operator-use-in (name form)
+(defun form-using-operator (name form)
   (cond ((operator-called-p form name) form)
-        ((consp form) (or (operator-use-in name (car form)) (operator-use-in name (cdr form))))))
+        ((consp form)
+         (or (form-using-operator name (car form)) (form-using-operator name (cdr form))))))
 
 (defun runaway-remedy (task)
   (let* ((form (find-if (lambda (form)
                           (operator-called-p form "LOOP" "HANDLE-FAILURE" "WITH-FAILURE-HANDLING"))
                         (plan-backtrace task (task-frame task))))
          (loop-p (operator-called-p form "LOOP"))
-         (wait (and loop-p (operator-use-in "WAIT-FOR" form))))
+         (wait (and loop-p (form-using-operator "WAIT-FOR" form))))
     (cond (wait
            (format nil "~A does not wait if its condition is true already. Also wait until it ~
                         is false, or write (wait-time 1)." (form-text wait)))
-          ((and form (not loop-p) (operator-use-in "RETRY" form))
+          ((and form (not loop-p) (form-using-operator "RETRY" form))
            (one-line "If it fails again at once, write (wait-time 1) before (retry), or count how
 often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
           (t (format nil "If the plan is to wait, write (wait-time 1) there~:[~;; if the loop is ~
@@ -145,7 +146,7 @@ often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
   "Let RUNNER run its ready tasks and apply all posts, one after the other, and return :idle. If the
 budget of steps is used up first, return :budget; the rest waits for the next reaction. Without a
 budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
-  (at-home (runner)
+  (with-owned-home (runner)
     (give-budget runner)
     (let ((outcome (let ((*leaves-offer-restarts* *break-on-user-error*))
                      (run-rounds runner))))
@@ -161,9 +162,9 @@ budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
 
 (defun apply-next-batch (runner)
   "Apply the oldest post to RUNNER, a batch or call. True if there is one. Errors become messages."
-  (multiple-value-bind (entry there) (next-entry runner)
+  (multiple-value-bind (entry there) (take-posted-entry runner)
     (when there
-      (at-home (runner)
+      (with-owned-home (runner)
         (if (functionp entry)
             (call-user-code entry "a call posted to a plan runner")
             (call-user-code #'apply-settings "a batch posted to a plan runner" entry)))
@@ -183,7 +184,7 @@ abandoned, with a warning for each. No task is left. Charges end, and posts are 
   (react-to-all runner)
   (loop for part = (some #'cleaning-part (plan-runner-tasks runner))
         while part
-        do (at-home (runner) (give-up-cleanup part))
+        do (with-owned-home (runner) (give-up-cleanup part))
            (react-to-all runner))
   (setf (home-closed-p runner) t))
 
@@ -196,7 +197,7 @@ abandoned, with a warning for each. No task is left. Charges end, and posts are 
 (defun advance-timers (runner tick)
   "Set the time of RUNNER to TICK, and wake the tasks that wait for this time."
   (setf (runner-tick runner) tick)
-  (at-home (runner) (run-timers (runner-timers runner) tick)))
+  (with-owned-home (runner) (run-timers (runner-timers runner) tick)))
 
 (defun next-wake-time (runner)
   "Return the tick of the earliest timer of RUNNER, or NIL."
@@ -271,7 +272,7 @@ LIMIT is NIL, until nothing can run. The other cleanups are abandoned, with a wa
   (loop (run-until-over runner task limit)
         (let ((part (cleaning-part task)))
           (when (or (task-over-p task) (null part)) (return))
-          (at-home (runner) (give-up-cleanup part)))))
+          (with-owned-home (runner) (give-up-cleanup part)))))
 
 (addition run-plan-alone)
 (defun run-plan-alone (plan &key arguments (runner (make-plan-runner)) limit)
@@ -281,7 +282,7 @@ value is :succeeded, :failed, :evaporated, :deadlock (reported as an error messa
 the tick LIMIT came first). If the plan is not over then, or at a non-local exit from
 RUN-PLAN-ALONE, the plan is ended; cleanups run until tick LIMIT at most. Signals WRONG-ARGUMENT."
   (check-argument run-plan-alone arguments (proper-list-p arguments) "a list of arguments")
-  (check-argument run-plan-alone limit (or (null limit) (quantity-p limit))
+  (check-argument run-plan-alone limit (or (null limit) (bounded-number-p limit))
                   "a tick, a number up to 1e15, or NIL")
   (let ((task (apply #'start-plan runner plan arguments)) (state nil))
     (in-any-case

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(failure-matches-p failure-passed-on-by failure-subject failure-text make-failure
+(export '(failure-matches-p failure-passed-on-by failure-for-clause failure-text make-failure
           write-failure))
 
 ;;; A failure is a condition but no error: failing is normal in plans, and IGNORE-ERRORS in a plan's
@@ -125,7 +125,7 @@ condition type of the failure or of its Lisp error, or (or TYPE...)."
         ((typep failure type) t)
         ((typep failure 'lisp-failure) (typep (lisp-failure-condition failure) type))))
 
-(defun failure-subject (failure type)
+(defun failure-for-clause (failure type)
   "Return the object that the variable of a clause for TYPE is bound to. The object is FAILURE, or
 the Lisp condition of FAILURE if TYPE is a type of Lisp conditions."
   (if (and (typep failure 'lisp-failure)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(+nothing+ +parked+ bundle-p call-leaf completion-p enter escape-p leaf-p make-bundle
-          make-completion make-escape make-leaf park required-slot single-value wake))
+          make-completion make-escape make-leaf park reject-missing-slot single-value wake))
 
 ;;; A signal ends or redirects a task: a PLAN-FAILURE; an ESCAPE to an enclosing node, perhaps of an
 ;;; enclosing task; the word :EVAPORATE; or a COMPLETION, by which the construct that the task
@@ -30,7 +30,7 @@
 
 ;;; Leaves.
 
-(defun required-slot (slot)
+(defun reject-missing-slot (slot)
   "Signal MISUSE, because a node was made without its slot SLOT."
   (reject-use "A node of a plan was made without its ~(~A~)." slot))
 
@@ -38,7 +38,7 @@
                      (:constructor make-leaf "Return a leaf for a source form and a function of the
 environment."))
   "An expression that cannot wait."
-  (function (required-slot 'function) function
+  (function (reject-missing-slot 'function) function
             "the function that runs the leaf, with the environment as argument" :writable :export))
 (declaim-final leaf)
 
@@ -49,7 +49,7 @@ environment."))
 (defun call-leaf (leaf environment)
   "Return the value of LEAF in ENVIRONMENT."
   (if *leaves-offer-restarts*
-      (call-leaf-offering leaf environment)
+      (call-leaf-with-restarts leaf environment)
       (funcall (leaf-function leaf) environment)))
 
 (defun read-leaf-value ()
@@ -57,12 +57,12 @@ environment."))
   (finish-output *query-io*)
   (list (evaluate-form (read *query-io*))))
 
-(defvar *in-leaf-p* nil
+(defvar *leaf-offers-restarts-p* nil
   "True while a leaf offers restarts. If true, the step around the leaf offers no restarts.")
 
-(defun call-leaf-offering (leaf environment)
+(defun call-leaf-with-restarts (leaf environment)
   "Return the value of LEAF in ENVIRONMENT, with the restarts RETRY and USE-VALUE."
-  (let ((text (form-text (node-form leaf))) (*in-leaf-p* t))
+  (let ((text (form-text (node-form leaf))) (*leaf-offers-restarts-p* t))
     (loop
       (restart-case (return (funcall (leaf-function leaf) environment))
         (retry ()

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(entry-for declared-names known-lambda-list reject-lisp-call procedures-to-offer
-          anonymous-procedure declare-procedure defined-p ensure-procedure enter-plan
+          anonymous-procedure declare-procedure procedure-usable-p ensure-procedure enter-plan
           install-procedure make-procedure procedure check-arguments procedure-name-p node-parts))
 
 ;;; A name that a plan calls refers to a cell, whether or not a procedure of that name exists yet.
@@ -32,15 +32,15 @@ MISUSE" :writable))
 (define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms ("PLAN")
   :finder registered-procedure :lister registered-procedures :internal t)
 
-(defvar *cells* (make-hash-table :test 'eq :synchronized t)
+(defvar *procedure-cells* (make-hash-table :test 'eq :synchronized t)
   "The cells of all names that plans define or call.")
 
 (defun ensure-procedure (name)
   "Return the cell of the procedure with the name NAME. If there is no such cell, make one."
-  (or (gethash name *cells*)
-      (setf (gethash name *cells*) (make-procedure name))))
+  (or (gethash name *procedure-cells*)
+      (setf (gethash name *procedure-cells*) (make-procedure name))))
 
-(defun defined-p (procedure)
+(defun procedure-usable-p (procedure)
   "True if PROCEDURE is defined and its name has not been redefined as a Lisp function."
   (and (procedure-entry procedure)
        (or (null (procedure-stub procedure))
@@ -51,17 +51,17 @@ MISUSE" :writable))
 (addition all-procedures find-procedure)
 (defun all-procedures ()
   "Return a list of all plan procedures that are defined, in order of definition."
-  (remove-if-not #'defined-p (registered-procedures)))
+  (remove-if-not #'procedure-usable-p (registered-procedures)))
 
 (defun procedures-to-offer ()
   "Return the names of all defined plan procedures, those of users first, the newest first."
-  (remove-if-not (lambda (name) (defined-p (registered-procedure name)))
+  (remove-if-not (lambda (name) (procedure-usable-p (registered-procedure name)))
                  (names-to-suggest *procedures*)))
 
 (defun live-namesake (name)
   "Return the newest defined procedure whose name is the same as NAME, in any package; or NIL."
   (find-if (lambda (procedure)
-             (and (same-name-p name (procedure-name procedure)) (defined-p procedure)))
+             (and (same-name-p name (procedure-name procedure)) (procedure-usable-p procedure)))
            (registered-procedures) :from-end t))
 
 ;; Users give a call, a form of plans, a function, or the name of a function for that of a plan.
@@ -106,7 +106,7 @@ MISUSE" :writable))
 itself comes first, then the newest procedure of that name in other packages. If there is no such
 procedure, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
   (let ((known (registered-procedure name nil)))
-    (cond ((and known (defined-p known)) known)
+    (cond ((and known (procedure-usable-p known)) known)
           ((and (typep name '(or symbol string)) (live-namesake name)))
           (errorp (reject-procedure name)))))
 
@@ -128,8 +128,8 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
 (defun procedure-name-p (name)
   "True if NAME is known to be the name of a plan procedure."
   (and (gethash name *declared-procedures*)
-       (let ((procedure (gethash name *cells*)))
-         (or (null procedure) (null (procedure-entry procedure)) (defined-p procedure)))))
+       (let ((procedure (gethash name *procedure-cells*)))
+         (or (null procedure) (null (procedure-entry procedure)) (procedure-usable-p procedure)))))
 
 (defun known-lambda-list (name)
   "Return the lambda list of the plan procedure NAME, if such a procedure is known; or NIL."
@@ -151,7 +151,7 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
                 name name more name arguments)))
 
 (defun set-lambda-list (procedure lambda-list)
-  (let ((shape (shape-of lambda-list)))
+  (let ((shape (lambda-list-shape lambda-list)))
     (setf (procedure-lambda-list procedure) lambda-list
           (procedure-least procedure) (shape-least shape)
           (procedure-most procedure) (shape-most shape)
@@ -188,7 +188,7 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
   procedure)
 
 (defmethod undo-definition ((procedure procedure))
-  (when (defined-p procedure) (fmakunbound (procedure-name procedure)))
+  (when (procedure-usable-p procedure) (fmakunbound (procedure-name procedure)))
   (remhash (procedure-name procedure) *declared-procedures*)
   (setf (procedure-entry procedure) nil))
 
@@ -214,7 +214,7 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
          :expected (format nil "~:[no argument~;~:*~A~], not ~A~:[~;: give the arguments one ~
                                 by one, not as a list~]"
                            (and (procedure-lambda-list procedure)
-                                (shape-text (procedure-lambda-list procedure)))
+                                (lambda-list-text (procedure-lambda-list procedure)))
                            trouble
                            (argument-list-given-p procedure arguments))))
 
@@ -222,12 +222,14 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
   "True if ARGUMENTS has a single element, which is a list of arguments that PROCEDURE takes."
   (and (typep arguments '(cons cons null))
        (proper-list-p (first arguments))
-       (null (arguments-misfit-text (shape-of (procedure-lambda-list procedure)) (first arguments)
+       (null (arguments-misfit-text (lambda-list-shape (procedure-lambda-list procedure))
+                                    (first arguments)
                                     :wrong-p (constantly t)))))
 
 (defun check-arguments (procedure arguments)
   "Signal WRONG-ARGUMENTS unless PROCEDURE takes the list ARGUMENTS."
-  (let ((trouble (arguments-misfit-text (shape-of (procedure-lambda-list procedure)) arguments
+  (let ((trouble (arguments-misfit-text (lambda-list-shape (procedure-lambda-list procedure))
+                                        arguments
                                         :wrong-p (constantly t))))
     (when trouble (reject-arguments procedure arguments trouble))))
 
@@ -256,10 +258,10 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
 ;;; functions in its nodes, and in those of its local plans, close over the variables around it.
 ;;; Such nodes, and the nodes that refer to them, belong to one run; a fork copies both.
 
-(defun defined-procedure-p (procedure)
+(defun definition-current-p (procedure)
   "True if PROCEDURE is the current definition of its name. False if it is local or has no name."
   (and (procedure-name procedure)
-       (eq procedure (gethash (procedure-name procedure) *cells*))))
+       (eq procedure (gethash (procedure-name procedure) *procedure-cells*))))
 
 (defun parts-of-code (object)
   "Return a list of what OBJECT, a node, procedure, function or environment, refers to."
@@ -291,7 +293,7 @@ these nodes, and true. Return NIL and false if one of them has closed over somet
                  ((or node procedure function)
                   (unless (or (gethash object seen)
                               (and (node-p object) (eq :shared (node-sharing object)))
-                              (and (procedure-p object) (defined-procedure-p object)))
+                              (and (procedure-p object) (definition-current-p object)))
                     (setf (gethash object seen) t)
                     (when (node-p object) (push object nodes))
                     (setf work (append (parts-of-code object) work))))
@@ -311,7 +313,7 @@ these nodes, and true. Return NIL and false if one of them has closed over somet
   (if (eq :shared (node-sharing node)) node (copy-slots node fork)))
 
 (defmethod copy-plan-value ((procedure procedure) fork)
-  (if (or (defined-procedure-p procedure)
+  (if (or (definition-current-p procedure)
           (nth-value 1 (shared-code procedure)))
       procedure
       (copy-slots procedure fork)))

@@ -36,7 +36,7 @@ with the task, a column and STREAM."
 (defun brief-failure-text (failure)
   (cut (failure-text failure) 500))
 
-(defun write-some (control items stream)
+(defun write-first-items (control items stream)
   "Write the first 30 of ITEMS to STREAM, each by the format string CONTROL, and count the rest."
   (let ((more (nthcdr 30 items)))
     (dolist (item (ldiff items more)) (format stream control item))
@@ -53,7 +53,7 @@ with the task, a column and STREAM."
        (loop for (type) in (remove-if-not #'consp (ensure-list (second form)))
              append (remove-if-not #'symbolp (ensure-list type)))))
 
-(defun probable-slip-p (type class)
+(defun probable-misspelling-p (type class)
   "True if the symbol TYPE may be a misspelt CLASS. The names differ in the ending, as STUCK and
 STUCKED, or in a few letters and not only in digits; or they are equal and only one is a keyword."
   (flet ((letters (name) (remove-if #'digit-char-p (symbol-name name)))
@@ -74,10 +74,11 @@ FAILURE, and this class; or NIL."
   (let* ((own (failure-class failure))
          (class (if (and own (symbolp own)) own (type-of failure))))
     (loop for form in (failure-plan-backtrace failure)
-          for type = (find-if (lambda (type) (probable-slip-p type class)) (clause-types form))
+          for type = (find-if (lambda (type) (probable-misspelling-p type class))
+                              (clause-types form))
           when type return (values type class))))
 
-(defun clause-for-errors (failure)
+(defun handler-type-for-errors (failure)
   "If FAILURE is not from a Lisp error, return the type of a handler clause around FAILURE that
 matches Lisp errors; otherwise NIL."
   (unless (typep failure 'lisp-failure)
@@ -89,7 +90,7 @@ matches Lisp errors; otherwise NIL."
 (defun misspelt-handler-text (failure)
   "Return a text if a clause around FAILURE is for a similar class, or for Lisp errors; or NIL."
   (multiple-value-bind (type class) (misspelt-handler-type failure)
-    (let ((error-type (clause-for-errors failure)))
+    (let ((error-type (handler-type-for-errors failure)))
       (cond (type (format nil "a clause is for ~(~S~), but the class of the failure ~
                           is ~(~S~)" type class))
             (error-type
@@ -101,17 +102,17 @@ matches Lisp errors; otherwise NIL."
           (brief-failure-text failure) (failure-tick failure) (form-text (failure-form failure))
           (cut (format nil "~{~A~^ > ~}" (failure-task-path failure)) 500))
   (format stream "  plan:~%")
-  (write-some "    ~A~%" (mapcar #'form-text (failure-plan-backtrace failure)) stream)
+  (write-first-items "    ~A~%" (mapcar #'form-text (failure-plan-backtrace failure)) stream)
   (when (failure-cause failure)
     (format stream "  while handling: ~A~%" (brief-failure-text (failure-cause failure))))
   (format stream "~@[  ~A~%~]~@[  ~A~%~]"
           (handler-ended-text failure) (misspelt-handler-text failure))
-  (write-some "  and in a cleanup: ~A~%"
-              (mapcar #'brief-failure-text (failure-suppressed failure)) stream)
+  (write-first-items "  and in a cleanup: ~A~%"
+                     (mapcar #'brief-failure-text (failure-suppressed failure)) stream)
   (when (and (typep failure 'lisp-failure) (string/= "" (lisp-failure-backtrace failure)))
     (format stream "  Lisp:~%~A" (cut (lisp-failure-backtrace failure) 4000))))
 
-(defun failure-story (failure)
+(defun one-line-failure-text (failure)
   "Return a description of FAILURE in one line: the failure, its tick, its place and its cause."
   (format nil "~A~@[ at tick ~D~]~@[ in ~{~A~^ < ~}~]~@[, after ~A~]~
                ~@[; ~A~]~@[; ~A~]"
@@ -128,7 +129,7 @@ matches Lisp errors; otherwise NIL."
       ;; The story prints the failure, too, which is no circle.
       (let ((*print-circle* nil))
         (print-unreadable-object (failure stream)
-          (write-string (cut (failure-story failure) 600) stream)))
+          (write-string (cut (one-line-failure-text failure) 600) stream)))
       (call-next-method)))
 
 (defun report-failure (failure &optional awaited-p)
@@ -204,14 +205,14 @@ if there is no such task. WITHIN is a plan runner, or a task; PLACE then starts 
   (check-argument find-task within (or (task-p within) (plan-runner-p within))
                   "a plan runner, such as (rpl-runner), or a task")
   (if (integerp place)
-      (find place (mapcan #'all-tasks (tasks-within within)) :key #'task-serial)
-      (loop with tasks = (tasks-within within)
+      (find place (mapcan #'all-tasks (direct-subtasks within)) :key #'task-serial)
+      (loop with tasks = (direct-subtasks within)
             for (step . more) on place
             for task = (find-if (lambda (task) (at-place-p task step)) tasks)
             while (and task more) do (setf tasks (task-children task))
             finally (return task))))
 
-(defun tasks-within (within)
+(defun direct-subtasks (within)
   (if (task-p within) (task-children within) (plan-runner-tasks within)))
 
 (addition task-source)

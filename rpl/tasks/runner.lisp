@@ -239,7 +239,7 @@ in COUNTED-STEPS, the slow step counts as one step, or as none if TASK is exempt
                     ((slice-spent-p task runner) (push task (runner-spent runner)))
                     (t (return task)))))))))
 
-(defun release-spent (runner)
+(defun requeue-spent-tasks (runner)
   (dolist (task (nreverse (shiftf (runner-spent runner) '())))
     (when (eq (task-state task) :ready) (make-ready task))))
 

@@ -100,7 +100,7 @@ FRAME and VALUE."
         (retry ()
           :test (lambda (condition)
                   (declare (ignore condition))
-                  (not *in-leaf-p*))
+                  (not *leaf-offers-restarts-p*))
           :report (lambda (stream)
                     (format stream "Do ~A again."
                             (form-text (current-form (frame-node frame) frame))))
@@ -204,7 +204,7 @@ its steps. FRAME and VALUE are what the last step returned. Return what RUN-STEP
       (decf (task-slice task) taken)
       (when (task-uncounted-p task) (uncount-steps runner taken)))))
 
-(defun check-room (runner)
+(defun check-task-limit (runner)
   (unless (< (runner-alive runner) *plan-task-limit*)
     (if (running-task runner)
         (fail :class :too-many-tasks :limit *plan-task-limit*)
@@ -215,7 +215,7 @@ its steps. FRAME and VALUE are what the last step returned. Return what RUN-STEP
   "Start TASK to run NODE in ENVIRONMENT, and return TASK. TASK is part number INDEX of PARENT, or a
 top-level task if PARENT is NIL."
   (let ((runner (if parent (task-runner parent) *runner*)))
-    (check-room runner)
+    (check-task-limit runner)
     (incf (runner-alive runner))
     (setf (task-runner task) runner
           (task-serial task) (incf (runner-serial runner))

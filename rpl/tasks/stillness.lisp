@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(tasks-awaited stuck-wait-text report-circle preemptors all-preemptors report-deadlock
-          report-stillness +no-fluent+ wait-forever warn-of-awaited-value waiting-parts
-          text-of-plans text-of-waits advice-on-stillness endless-advice fluents-awaited))
+(export '(tasks-awaited stuck-wait-text report-wait-cycle preemptors all-preemptors report-deadlock
+          warn-of-outside-waits +no-fluent+ wait-forever warn-of-awaited-value waiting-parts
+          waiting-plans-text text-of-waits advice-on-endless-waits endless-advice fluents-awaited))
 
 ;;; A task is stuck if what it waits for can only come from stuck tasks. A task with parts is stuck
 ;;; if all of them are, not counting policies, which only watch. If it is unknown what could wake a
@@ -29,11 +29,11 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
         append (loop for frame in (frame-chain (task-frame each))
                      append (preemptors each (frame-data frame)))))
 
-(defun working-parts (task)
+(defun innermost-parts-at-level (task)
   "Return the innermost parts of TASK at TASK's level. Policies, at other levels, are left out."
   (let ((children (remove (task-level task) (task-children task) :key #'task-level :test #'<)))
     (if children
-        (loop for child in children append (working-parts child))
+        (loop for child in children append (innermost-parts-at-level child))
         (list task))))
 
 (defun obstacles (task)
@@ -48,7 +48,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
           do (let* ((next (pop open)) (others (obstacles next)))
                (unless others (return-from stuck-tasks '()))
                (pushnew next stuck)
-               (dolist (part (mapcan #'working-parts others))
+               (dolist (part (mapcan #'innermost-parts-at-level others))
                  (unless (or (member part stuck) (member part open))
                    (push part open)))))
     (reverse stuck)))
@@ -72,24 +72,24 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
           (format nil "~A waits until ~{~A~^ and ~} ~:[gives~;give~] back a valve taken from it"
                   (task-label task) names (rest names))))))
 
-(defun warn-of-circle (tasks)
+(defun warn-of-wait-cycle (tasks)
   "Queue a warning that TASKS wait for each other. A task around TASKS may still end one of TASKS."
-  (warn-notably "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
-                (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
-                ". These tasks can go on only if one of them is ended, for example by a deadline."))
+  (queue-notable-warning "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
+                         (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
+                         ". These tasks can go on only if one of them is ended, for example by a deadline."))
 
-(defun report-circle (task)
+(defun report-wait-cycle (task)
   "Queue a warning if TASK, which has begun to wait, is in a cycle of waits."
   (let ((tasks (stuck-tasks task)))
-    (when tasks (warn-of-circle tasks))))
+    (when tasks (warn-of-wait-cycle tasks))))
 
 ;;; A task with a part that goes on is not stuck. A circle may close when that part ends.
 
-(defun first-working-part (task)
+(defun first-innermost-part (task)
   (let ((child (loop for child = (task-newest-child task) then (task-older child)
                      while child
                      when (<= (task-level child) (task-level task)) return child)))
-    (if child (first-working-part child) task)))
+    (if child (first-innermost-part child) task)))
 
 (defun obstacle-p (task others)
   (some (lambda (other)
@@ -99,10 +99,10 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
 (defun warn-of-remaining-cycle (task)
   "When a part of TASK has ended, queue a warning if the others wait in a cycle through TASK."
   (when (and (task-newest-child task) (null (task-signal task)))
-    (let* ((part (first-working-part task))
+    (let* ((part (first-innermost-part task))
            (tasks (and (or (task-awaiting part) (plusp (task-blocked part)))
                        (stuck-tasks part))))
-      (when (obstacle-p task tasks) (warn-of-circle tasks)))))
+      (when (obstacle-p task tasks) (warn-of-wait-cycle tasks)))))
 
 ;;;; Stillness
 
@@ -138,7 +138,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
 (defun status-fluent-p (fluent)
   (starts-with-subseq "(task-status " (fluent-text fluent)))
 
-(defun end-wait-advice (name part tasks)
+(defun missing-end-wait-text (name part tasks)
   "Return a text: a form that waits for the end of command NAME on PART; NIL if TASKS wait for it."
   (let ((text (wait-for-end-text name part)))
     (and text
@@ -157,7 +157,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
                  plan))
         (name
          (format nil "The last command of ~A was ~(~A~)~:[, which has ended~;; ~:*~A waits for its ~
-                      end~]." plan name (end-wait-advice name part tasks)))
+                      end~]." plan name (missing-end-wait-text name part tasks)))
         (t (format nil "~A has issued no command by a function such as rpl-robot-turn; only such ~
                         functions change the fluents of a robot." plan))))))
 
@@ -166,7 +166,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (let ((fluent (find-if (lambda (subject)
                            (and (fluent-p subject)
                                 (equal (list subject) (base-fluents subject))
-                                (not (robots-fluent-p subject))
+                                (not (robot-fluent-p subject))
                                 (plusp (fluent-pulses subject))))
                          (mapcar (lambda (task) (traced-subject (task-awaiting task))) tasks))))
     (and fluent
@@ -207,13 +207,13 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
          (format nil "~A does not end by itself. End it by (return), or start the plan by ~
                       BEGIN-PLAN, which does not wait for the end of a plan." (form-text form)))))
 
-(defun advice-on-stillness (tasks)
+(defun advice-on-endless-waits (tasks)
   "Return sentences with advice about TASKS, which wait and which nothing will wake."
   (let* ((valueless (find +no-fluent+ tasks :key #'task-awaiting))
          (fluents (fluents-awaited tasks))
-         (robots (remove-if-not #'robots-fluent-p fluents))
+         (robots (remove-if-not #'robot-fluent-p fluents))
          (states (remove-if-not #'status-fluent-p fluents))
-         (others (remove-if #'status-fluent-p (remove-if #'robots-fluent-p fluents))))
+         (others (remove-if #'status-fluent-p (remove-if #'robot-fluent-p fluents))))
     (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is in progress: ~
                  issue a command before the wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
                  ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~:{~A is ~(~S~)~:^, ~}~
@@ -230,15 +230,15 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
 
 ;;; Reports.
 
-(defun warn-of-wait (task text)
+(defun warn-of-dubious-wait (task text)
   "Queue a warning with TEXT, once for each form, that a wait of TASK is probably not as meant."
   (when (first-warning-p (task-form task) (task-runner task))
-    (warn-notably "In the plan " (task-label (task-top task)) ", " text)))
+    (queue-notable-warning "In the plan " (task-label (task-top task)) ", " text)))
 
 (defun wait-forever (task)
   "Let TASK wait forever, as it got no fluent to wait for. Queue a warning, once for each form."
   (park task +no-fluent+)
-  (warn-of-wait task (no-fluent-advice task)))
+  (warn-of-dubious-wait task (no-fluent-advice task)))
 
 (defun warn-of-awaited-value (task value)
   "If VALUE, which TASK waits for, is hardly meant as a condition, warn once for each form."
@@ -248,17 +248,18 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
         (task (values "task" "(join-task task) waits for the end of a task"))
         (function (values "function" "(wait-until (funcall function)) calls it in each tick")))
     (when kind
-      (warn-of-wait task (format nil "~A does not wait: its argument is a ~A, ~A, which counts as ~
+      (warn-of-dubious-wait task (format nil "~A does not wait: its argument is a ~A, ~A, which counts as ~
                                       true. ~A."
-                                 (form-text (task-form task)) kind (form-text value 40) remedy)))))
+                                         (form-text (task-form task)) kind (form-text value 40)
+                                         remedy)))))
 
-(defun tree-text (runner)
+(defun runner-tasks-text (runner)
   (cut (with-output-to-string (stream)
          (dolist (task (plan-runner-tasks runner))
            (write-task-tree task 0 stream)))
        4000))
 
-(defun text-of-plans (tasks)
+(defun waiting-plans-text (tasks)
   "Return a text that starts with the names of the plans TASKS and says what they wait for."
   (format nil "the plan~P ~{~A~^, ~} wait~:[s~;~] for ~A"
           (length tasks) (mapcar #'task-label tasks) (rest tasks)
@@ -273,14 +274,16 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
          (format nil "a call, such as of WAKE-UP, that lets ~{~A~^ and ~} go on"
                  (mapcar #'task-label blocked)))))
 
-(defun report-stillness (runner)
+(defun warn-of-outside-waits (runner)
   "Queue a warning, with advice. The tasks of RUNNER wait for events, and neither these tasks nor
 the simulator can cause the events. Only calls from outside can. A thread waits for the end of one
 of these tasks."
   (let ((tasks (mapcan #'waiting-parts (plan-runner-tasks runner))))
-    (warn-notably "At tick " (runner-tick runner) " all plans wait for events that neither the "
-                  "robot nor time will cause. SET-VALUE, PULSE or WAKE-UP may still wake them. "
-                  "Control-C ends this wait." (advice-on-stillness tasks) t (tree-text runner))))
+    (queue-notable-warning "At tick " (runner-tick runner)
+                           " all plans wait for events that neither the "
+                           "robot nor time will cause. SET-VALUE, PULSE or WAKE-UP may still wake them. "
+                           "Control-C ends this wait." (advice-on-endless-waits tasks) t
+                           (runner-tasks-text runner))))
 
 (defun report-deadlock (runner)
   "Queue an error message that no task of RUNNER can go on. The message has the plans, their waits,
@@ -288,9 +291,9 @@ advice and the tree of tasks."
   (let ((tasks (plan-runner-tasks runner)))
     (queue-message
      (make-message :error
-                   (list "Deadlock at tick " (runner-tick runner) ": " (text-of-plans tasks)
+                   (list "Deadlock at tick " (runner-tick runner) ": " (waiting-plans-text tasks)
                          ", which nothing will cause."
-                         (advice-on-stillness (mapcan #'waiting-parts tasks)) t
-                         (tree-text runner))
+                         (advice-on-endless-waits (mapcan #'waiting-parts tasks)) t
+                         (runner-tasks-text runner))
                    :notable-p t)
      *message-queue*)))

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(current-form form-text whole-form-text forms-under-way frame-runs frame frame-state
+(export '(current-form form-text whole-form-text forms-under-way frames-by-expression frame
+                       frame-state
           make-frame make-task node task-label evaporating-p part-of-p lineage frame-chain
           frames-around under-way-p frame-p))
 
@@ -168,7 +169,7 @@ NIL" :writable :export)
 
 ;; A body is at the expression that one of its steps runs; a call that the body of another is at
 ;; runs that body anew.
-(defun frame-runs (frame)
+(defun frames-by-expression (frame)
   "Return FRAME and the frames around it in the same task, innermost first, as a list of lists. The
 frames in one list run the same expression."
   (let ((runs '()) (last-form nil))
@@ -185,7 +186,7 @@ frames in one list run the same expression."
 
 (defun forms-under-way (frame)
   "Return a list of the expressions that FRAME and the frames around it run, innermost first."
-  (loop for (each) in (frame-runs frame)
+  (loop for (each) in (frames-by-expression frame)
         collect (current-form (frame-node each) each)))
 
 (addition task-form)

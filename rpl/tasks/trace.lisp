@@ -86,7 +86,7 @@ task and each task around it; at the start of a task, the number of its parent" 
   "Return a text of AGENT, the agent of a trace entry."
   (if (integerp agent)
       (format nil "task ~D" agent)
-      (cut (one-line (note-text (if agent (asker-note agent) "a program or the REPL"))) 100)))
+      (cut (one-line (asker-note-text (if agent (asker-note agent) "a program or the REPL"))) 100)))
 
 (defun subject-text (subject)
   (cond ((null subject) nil)

@@ -14,8 +14,8 @@ TRACE-ENTRY; without a trace, they are not evaluated."
        (trace-task ,task ,event ,subject ,value))))
 
 ;; Most frames that are noted have not begun: then one need not ask the node.
-(declaim (inline form-now))
-(defun form-now (task)
+(declaim (inline task-current-form))
+(defun task-current-form (task)
   (let ((frame (task-frame task)))
     (if (and frame (zerop (frame-counter frame)))
         (node-form (frame-node frame))
@@ -26,7 +26,7 @@ TRACE-ENTRY; without a trace, they are not evaluated."
   (let ((runner (task-runner task)))
     (declare (type plan-runner runner))
     (add-trace-entry (runner-trace runner) (runner-tick runner) event (task-serial task)
-                     (form-now task) subject value)))
+                     (task-current-form task) subject value)))
 
 (defun trace-running-task (runner event subject value)
   (let* ((asker *asker*)

@@ -6,7 +6,7 @@
           malformed-definition-clause warn-of-definition warn-of-style reject-name plain-name
           reject-use run-is-over-error reject-finished-run names-to-show
           malformed-definition-definition call-refusing-exits refuse-exits call-allowing-exits
-          +largest+ +largest-quantity+ sane-number-p quantity-p amount-p probability-p whole-p
+          +largest+ +largest-quantity+ sane-number-p bounded-number-p amount-p probability-p whole-p
           define-with-keywords))
 
 ;;; Misuse of the library signals one of these. A robot that fails in a task does not: it reports an
@@ -41,7 +41,7 @@
                        (wrong-argument-name condition)
                        (let ((value (wrong-argument-value condition)))
                          (if (pathnamep value) (file-name-text value) (abridged value)))
-                       (sentence (wrong-argument-expected condition))))))
+                       (add-full-stop (wrong-argument-expected condition))))))
   (:documentation "A function was called with an argument that it cannot use."))
 
 (defun reject-argument (operator name value expected)
@@ -67,7 +67,7 @@
                        (malformed-definition-place condition)
                        clause
                        (abridged clause)
-                       (sentence (malformed-definition-expected condition))))))
+                       (add-full-stop (malformed-definition-expected condition))))))
   (:documentation "A defining form (DEFMAP, DEFROBOT ...) has an invalid clause."))
 
 (setf (documentation 'malformed-definition-definition 'function)
@@ -135,7 +135,7 @@ file the warning is a STYLE-WARNING. (Scripts hide style warnings, but scripts a
                                  ~@[ Known: ~{~A~^, ~}.~]~@[ ~A~]"
                          kind
                          (if (symbolp name)
-                             (cut (plain-name name) +shown-characters+)
+                             (cut (plain-name name) +shown-character-limit+)
                              (prin1-to-string (abridged name)))
                          (and nearest (plain-name nearest))
                          (names-to-show known)
@@ -211,7 +211,7 @@ If TEXT is NIL, let EXIT exit again."
 (defun non-double-within-p (value limit)
   (and (finite-p value) (<= (- limit) value limit)))
 
-(declaim (inline within-p sane-number-p quantity-p))
+(declaim (inline within-p sane-number-p bounded-number-p))
 (defun within-p (value limit)
   (if (typep value 'double-float)
       (and (finite-double-p value)
@@ -222,13 +222,13 @@ If TEXT is NIL, let EXIT exit again."
   "True if VALUE is a possible position, distance, speed, angle or time: from -1e9 to 1e9."
   (within-p value +largest+))
 
-(defun quantity-p (value)
+(defun bounded-number-p (value)
   "True if VALUE, such as the value of an attribute, is a number from -1e15 to 1e15."
   (within-p value +largest-quantity+))
 
 (defun amount-p (value)
   "True if VALUE is a number from 0 to 1e15."
-  (and (quantity-p value) (not (minusp value))))
+  (and (bounded-number-p value) (not (minusp value))))
 
 (defun probability-p (value)
   "True if VALUE is a number from 0 to 1."

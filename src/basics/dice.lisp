@@ -3,7 +3,7 @@
 (in-package :ars-magna.basics)
 
 (export '(dice make-dice copy-dice text-hash text-checksum digest make-digest digest-add
-          digest-add-word digest-identity))
+          digest-add-word digest-add-identity))
 
 ;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the same
 ;;; numbers on every machine and with every compiler. A simulation has one stream for each purpose,
@@ -83,7 +83,7 @@
 (defun chance (probability dice)
   "True with PROBABILITY. No dice are rolled if PROBABILITY is 0 or less, or 1 or more. Signals
 WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
-  (check-argument chance probability (quantity-p probability) "a probability, from 0 to 1")
+  (check-argument chance probability (bounded-number-p probability) "a probability, from 0 to 1")
   (let ((probability (double probability)))
     (cond ((<= probability 0d0) nil)
           ((>= probability 1d0) t)
@@ -93,8 +93,8 @@ WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
 (defun roll-between (low high dice)
   "Return a double-float uniform in [LOW, HIGH). Signals WRONG-ARGUMENT unless LOW and HIGH are
 numbers from -1e15 to 1e15."
-  (check-argument roll-between low (quantity-p low) "a number from -1e15 to 1e15")
-  (check-argument roll-between high (quantity-p high) "a number from -1e15 to 1e15")
+  (check-argument roll-between low (bounded-number-p low) "a number from -1e15 to 1e15")
+  (check-argument roll-between high (bounded-number-p high) "a number from -1e15 to 1e15")
   (let ((low (double low)) (high (double high)))
     (+ low (* (roll dice) (- high low)))))
 
@@ -102,7 +102,7 @@ numbers from -1e15 to 1e15."
 (defun roll-within (range dice)
   "Return a double-float uniform in [-RANGE, RANGE); 0 if RANGE is 0. Signals WRONG-ARGUMENT unless
 RANGE is a number from -1e15 to 1e15."
-  (check-argument roll-within range (quantity-p range) "a number from -1e15 to 1e15")
+  (check-argument roll-within range (bounded-number-p range) "a number from -1e15 to 1e15")
   (let ((range (double range)))
     (if (zerop range) 0d0 (roll-between (- range) range dice))))
 
@@ -124,8 +124,9 @@ to 2^53, the range in which every integer is a double-float."
 (defun roll-gaussian (mean deviation dice)
   "Return a normally distributed double-float. If DEVIATION is 0, return MEAN and roll no dice.
 Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15."
-  (check-argument roll-gaussian mean (quantity-p mean) "a number from -1e15 to 1e15")
-  (check-argument roll-gaussian deviation (quantity-p deviation) "a number from -1e15 to 1e15")
+  (check-argument roll-gaussian mean (bounded-number-p mean) "a number from -1e15 to 1e15")
+  (check-argument roll-gaussian deviation (bounded-number-p deviation)
+                  "a number from -1e15 to 1e15")
   (if (zerop deviation)
       (double mean)
       (let ((radius (sqrt (the (double-float 0d0) (* -2d0 (logarithm (- 1d0 (roll dice)))))))
@@ -145,13 +146,13 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
   (setf (digest-value digest)
         (mix-bits (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 
-(defgeneric digest-identity (object digest)
+(defgeneric digest-add-identity (object digest)
   (:documentation "Add to DIGEST the data that identify OBJECT. If no data identify OBJECT, add its
 contents. Return DIGEST."))
 
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by their
-elements. All functions count as equal. Other objects are added by DIGEST-IDENTITY. Return DIGEST."
+elements. All functions count as equal. Other objects are added by DIGEST-ADD-IDENTITY. Return DIGEST."
   (declare #.*hot* (type digest digest))
   (typecase datum
     (null (digest-add-word digest (load-time-value (name-hash nil))))
@@ -177,7 +178,7 @@ elements. All functions count as equal. Other objects are added by DIGEST-IDENTI
     (vector (digest-add-word digest (length datum))
      (loop for element across datum do (digest-add digest element)))
     (function (digest-add-word digest 1))
-    (t (digest-identity datum digest)))
+    (t (digest-add-identity datum digest)))
   digest)
 
 (defun text-checksum (text &optional (before 0))

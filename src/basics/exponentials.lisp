@@ -148,14 +148,14 @@ first with 42 binary places.")
   "Return e to the power NUMBER, with the same bits on every machine (CL:EXP differs). Signals
 WRONG-ARGUMENT unless NUMBER is real, and FLOATING-POINT-OVERFLOW if it is above 709.78."
   (check-number exponential number)
-  (result-in-last-cell put-exponential (double number)))
+  (call-cell-function put-exponential (double number)))
 
 (addition logarithm)
 (defun logarithm (number)
   "Return the natural logarithm of NUMBER, with the same bits on every machine; CL:LOG differs
 between machines. Signals WRONG-ARGUMENT unless NUMBER is above 0."
   (check-number logarithm number)
-  (result-in-last-cell put-logarithm (double number)))
+  (call-cell-function put-logarithm (double number)))
 
 (defun power (base exponent)
   "Return BASE to the power EXPONENT as a double-float, with the same bits on every machine; CL:EXPT
@@ -163,4 +163,4 @@ differs between machines. Signals FLOATING-POINT-OVERFLOW. Signals WRONG-ARGUMEN
 negative, or if BASE is 0 and EXPONENT is negative."
   (check-number power base)
   (check-number power exponent)
-  (result-in-last-cell put-power (double base) (double exponent)))
+  (call-cell-function put-power (double base) (double exponent)))

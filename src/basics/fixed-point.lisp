@@ -69,7 +69,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
   "Return the natural logarithm of the rational X, from 1/2 to 2."
   (* 2 (sum-odd-powers (/ (1- x) (1+ x)) 1)))
 
-(defun sum-alternating (x power)
+(defun fixed-sine-or-cosine (x power)
   "Return the cosine of the rational X if POWER is 0, and its sine if POWER is 1."
   (let ((square (to-fixed (* x x))))
     (sum-series (if (zerop power) (to-fixed 1) (to-fixed x))
@@ -85,8 +85,8 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 
 (defun sine-row (k)
   "Return the sine and the cosine of K/128, each in two parts."
-  (append (double-parts (sum-alternating (/ k 128) 1) 53)
-          (double-parts (sum-alternating (/ k 128) 0) 53)))
+  (append (double-parts (fixed-sine-or-cosine (/ k 128) 1) 53)
+          (double-parts (fixed-sine-or-cosine (/ k 128) 0) 53)))
 
 (defun power-row (k)
   "Return a list of 2^(K/128), rounded, and its relative rounding error."
@@ -129,7 +129,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 ;;; A full call boxes its double-floats. So inline functions pass them in a vector on the stack. The
 ;;; last cell is for the result: a result in the cell of an argument takes 5 ns more.
 
-(defmacro result-in-last-cell (function &rest numbers)
+(defmacro call-cell-function (function &rest numbers)
   "Call FUNCTION with a vector of NUMBERS and a last cell for the result. Return the result."
   (with-gensyms (cells)
     (let ((count (length numbers)))

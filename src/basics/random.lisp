@@ -36,26 +36,26 @@ filled.")
         for index from (1+ +first-word-index+)
         do (setf (aref words index) mark)))
 
-(defun marked-p (words)
+(defun seed-marked-p (words)
   (declare (type random-words words))
   (loop for mark of-type (unsigned-byte 32) across +mark+
         for index from (1+ +first-word-index+)
         always (= mark (aref words index))))
 
-(defun fill-if-marked (words)
+(defun fill-if-seed-marked (words)
   (declare (type random-words words))
-  (when (marked-p words)
+  (when (seed-marked-p words)
     (fill-random-words (aref words +first-word-index+) words)))
 
 (wrap-random-renewal (lambda (renew words)
-                       (fill-if-marked words)
+                       (fill-if-seed-marked words)
                        (funcall renew words)))
 
 (defparameter *seeding-can-wait-p*
   (flet ((state (filled-p)
            (let* ((state (make-random-state nil)) (words (random-state-words state)))
              (mark-seeded words 1992)
-             (when filled-p (fill-if-marked words))
+             (when filled-p (fill-if-seed-marked words))
              state)))
     (= (random (expt 2 64) (state nil)) (random (expt 2 64) (state t))))
   "True if this SBCL renews a random state's words at its first roll, so they can be filled then.")
@@ -64,7 +64,7 @@ filled.")
   "Seed the random state STATE with SHORT, an integer of 32 bits, and return STATE."
   (let ((words (random-state-words state)))
     (mark-seeded words short)
-    (unless *seeding-can-wait-p* (fill-if-marked words))
+    (unless *seeding-can-wait-p* (fill-if-seed-marked words))
     state))
 
 (defun reseed (state seed)
@@ -141,7 +141,7 @@ that changes a world, do nothing: such code uses *TICK-DICE*."
   "Return the contents of the random state STATE as a list of 32-bit integers. If STATE was not used
 since it was seeded, list only the seed; else list the position of the next word, and all words."
   (let ((words (random-state-words state)))
-    (if (marked-p words)
+    (if (seed-marked-p words)
         (list (aref words +first-word-index+))
         (coerce (subseq words +position-index+) 'list))))
 

@@ -3,8 +3,9 @@
 (in-package :ars-magna.basics)
 
 (export '(document-restarts all-restarts restart-documentation public addition settable
-          settable-p addition-p addition-text public-symbols *marking-p* define-record reader-text
-          reader-marks))
+          settable-p addition-p addition-text public-symbols *loading-simulator-p* define-record
+          reader-text
+          reader-export-forms))
 
 ;;; A mark precedes the definition of a name: PUBLIC for the manual's names, ADDITION for ours. The
 ;;; users' packages ARS and NISP collect these (see src/faces.lisp). Unmarked names are internal.
@@ -16,7 +17,7 @@ SYMBOL is an addition to the manual."
   (faces '() :type list :read-only t)
   (addition-p nil :type boolean :read-only t))
 
-(defvar *marks* '() "All marks, in order of definition.")
+(defvar *public-marks* '() "All marks, in order of definition.")
 
 (defparameter *packages-of-nisp*
   '("ARS-MAGNA.NISP" "ARS-MAGNA.CANVAS" "ARS-MAGNA.RPL.FLUENTS" "ARS-MAGNA.RPL.TASKS"
@@ -24,40 +25,41 @@ SYMBOL is an addition to the manual."
     "ARS-MAGNA.RPL-ROBOT" "ARS-MAGNA.RPL-PICTURES" "ARS-MAGNA.RPL-PROJECTING")
   "The packages whose public names NISP exports by default. ARS exports all other public names.")
 
-(defun default-face (symbol)
+(defun default-export-package (symbol)
   (let ((layer (package-name (symbol-package symbol))))
     (if (member layer *packages-of-nisp* :test #'string=) :nisp :ars)))
 
-(defun find-mark (symbol)
-  (find symbol *marks* :key #'mark-symbol :test #'eq))
+(defun find-public-mark (symbol)
+  (find symbol *public-marks* :key #'mark-symbol :test #'eq))
 
-(defun register-mark (mark)
-  (let ((old (find-mark (mark-symbol mark))))
-    (setf *marks* (if old
-                      (substitute mark old *marks* :test #'eq)
-                      (append *marks* (list mark))))))
+(defun register-public-mark (mark)
+  (let ((old (find-public-mark (mark-symbol mark))))
+    (setf *public-marks* (if old
+                             (substitute mark old *public-marks* :test #'eq)
+                             (append *public-marks* (list mark))))))
 
-(defvar *marking-p* t
+(defvar *loading-simulator-p* t
   "True while the simulator is being loaded. Later definitions belong to users and get no marks.")
 
-(defun mark-names (names addition-p)
+(defun mark-public-names (names addition-p)
   "Mark and export NAMES, symbols or lists (symbol face...). An addition keeps its mark."
-  (when *marking-p*
+  (when *loading-simulator-p*
     (dolist (name names)
       (destructuring-bind (symbol &rest faces) (ensure-list name)
         (export symbol (symbol-package symbol))
         (when (or addition-p (not (addition-p symbol)))
-          (register-mark (make-mark symbol (or faces (list (default-face symbol))) addition-p)))))))
+          (register-public-mark (make-mark symbol (or faces (list (default-export-package symbol)))
+                                           addition-p)))))))
 
 (defmacro public (&rest names)
   "Mark NAMES, which are defined next, as public names that the manual has. A name may be a list
 (name face...), with the packages, :ARS and :NISP, that export the name."
-  `(mark-names ',names nil))
+  `(mark-public-names ',names nil))
 
 (defmacro addition (&rest names)
   "Mark NAMES, which are defined next, as public names that the manual does not have. A name may be
 a list (name face...), as for PUBLIC."
-  `(mark-names ',names t))
+  `(mark-public-names ',names t))
 
 (defvar *settable* '() "The public symbols whose functions users may SETF.")
 
@@ -72,13 +74,13 @@ the state of a run must be changed by functions that the journal records."
 
 (defun public-symbols (face)
   "Return the symbols that the package FACE, :ARS or :NISP, exports, in order of definition."
-  (loop for mark in *marks*
+  (loop for mark in *public-marks*
         when (member face (mark-faces mark))
           collect (mark-symbol mark)))
 
 (defun addition-p (symbol)
   "True if SYMBOL is marked as an addition to the manual."
-  (let ((mark (find-mark symbol)))
+  (let ((mark (find-public-mark symbol)))
     (and mark (mark-addition-p mark))))
 
 (defun addition-text (text)
@@ -134,7 +136,7 @@ this, add it as the last line, and remove a reference to a chapter of the manual
     (append (texts "True of objects" (list predicate))
             (texts "Return a new object" constructors))))
 
-(defun reader-marks (slots reader)
+(defun reader-export-forms (slots reader)
   "Return forms that export the readers of the SLOTS marked :EXPORT or :ADDITION. READER, a function
 of the slot's name, returns the reader's name."
   (flet ((readers (mark)
@@ -195,6 +197,6 @@ Return the name. Signals MALFORMED-DEFINITION."
                          ,@(unless (assoc :copier options) '((:copier nil))))
          ,documentation
          ,@(mapcar #'slot-definition slots))
-       ,@(reader-marks slots (lambda (slot) (symbolicate (conc-name name options) slot)))
+       ,@(reader-export-forms slots (lambda (slot) (symbolicate (conc-name name options) slot)))
        (set-documentations ',(record-texts name options documentation slots))
        ',name)))

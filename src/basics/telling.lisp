@@ -3,8 +3,8 @@
 (in-package :ars-magna.basics)
 
 (export '(simulator-symbol-p format-briefly report-briefly printable-report simulator-error-text
-          partial-report typed-input-p reading-trouble text-of-condition one-line-text point-text
-          zero-if-tiny editor-output-stream cause-of-reading-trouble))
+          partial-report typed-input-p reading-error-text text-of-condition one-line-text point-text
+          zero-if-tiny editor-output-stream cause-of-reading-error))
 
 ;;; What SBCL reports of a wrong type differs between its versions: the type that its compiler has
 ;;; derived, the variable that was to be bound. Tables of experiments hold these texts, and two rows
@@ -104,7 +104,7 @@ Return NIL if TYPE is no range of integers, or DATUM is no integer."
   (let ((package (symbol-package symbol)))
     (and package (starts-with-subseq "ARS-MAGNA." (package-name package)))))
 
-(defun conflict-text (condition)
+(defun name-conflict-text (condition)
   "Return a text for the name conflict CONDITION if the simulator owns one of the symbols, or NIL."
   (let* ((symbols (sb-ext:name-conflict-symbols condition))
          (ours (find-if #'simulator-symbol-p symbols)))
@@ -138,7 +138,7 @@ Return NIL if TYPE is no range of integers, or DATUM is no integer."
      (typecase condition
        (arithmetic-error
         (second (assoc-if (lambda (type) (typep condition type)) *arithmetic-texts*)))
-       (sb-ext:name-conflict (conflict-text condition))
+       (sb-ext:name-conflict (name-conflict-text condition))
        ((or undefined-function unbound-variable) (undefined-name-text condition))
        (stream-error (access-refused-text condition))
        ;; Lisp's own text for ECASE and the like is used.
@@ -179,10 +179,10 @@ FORMAT-BRIEFLY. An object that is already being printed does not count as circul
       (and (typep condition 'end-of-file)
            (not (typep (stream-error-stream condition) 'file-stream)))))
 
-(defun cause-of-reading-trouble (condition)
+(defun cause-of-reading-error (condition)
   "Return the original cause of CONDITION. LOAD wraps conditions in others that add a position."
   (let ((cause (encapsulated-condition condition)))
-    (if cause (cause-of-reading-trouble cause) condition)))
+    (if cause (cause-of-reading-error cause) condition)))
 
 (defun unreadable-name-remedy (text)
   "Return a sentence with a remedy if the error text TEXT is about an unreadable name; else NIL."
@@ -191,23 +191,23 @@ FORMAT-BRIEFLY. An object that is already being printed does not count as circul
         ((search "is not external" text)
          "To use an internal symbol of that package, write two colons")))
 
-(defun encoding-trouble (condition)
+(defun encoding-error-text (condition)
   "If CONDITION says that a file has an unexpected encoding, return a text that says so; else NIL."
   (let ((encoding (undecodable-format condition)))
     (and encoding
          (format nil "it has bytes that are not ~A. Save the file in ~:*~A" encoding))))
 
-(defun undecodable-text (condition)
-  (let ((trouble (encoding-trouble condition)))
+(defun undecodable-file-text (condition)
+  (let ((trouble (encoding-error-text condition)))
     (and trouble
          (format nil "~:[This~;~:*~A~] cannot be read: ~A."
                  (ignore-errors (native-name (pathname (stream-error-stream condition))))
                  trouble))))
 
-(defun reading-trouble (condition)
+(defun reading-error-text (condition)
   "Return the text of CONDITION, which says why Lisp text cannot be read, without names of streams."
-  (let* ((cause (cause-of-reading-trouble condition))
-         (text (cond ((encoding-trouble cause))
+  (let* ((cause (cause-of-reading-error condition))
+         (text (cond ((encoding-error-text cause))
                      ((typep cause 'simple-condition)
                       (format-briefly nil "~?" (simple-condition-format-control cause)
                                       (simple-condition-format-arguments cause)))
@@ -275,8 +275,8 @@ printed form, or an empty text if it cannot be printed."
         ((and (typep condition 'end-of-file) (typed-input-p (stream-error-stream condition)))
          "The input has ended: there is nothing left to read.")
         ((reading-error-p condition)
-         (sentence (format nil "This cannot be read: ~A" (reading-trouble condition))))
-        ((undecodable-text condition))
+         (add-full-stop (format nil "This cannot be read: ~A" (reading-error-text condition))))
+        ((undecodable-file-text condition))
         (t (lisp-error-text condition))))
 
 (defun text-of-condition (condition)

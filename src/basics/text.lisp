@@ -2,12 +2,13 @@
 
 (in-package :ars-magna.basics)
 
-(export '(blank-p one-line cut escape-controls control-character-p sentence wrapped-text
+(export '(blank-character-p one-line cut escape-controls control-character-p add-full-stop
+                            wrapped-text
           call-printing-plainly printing-plainly printing-text print-named abridged safe-text
           unqualified-text text-as-typed +more+ same-name-p nearest-name misspelling-p value-equal
           name-string name-before-p))
 
-(defun blank-p (char)
+(defun blank-character-p (char)
   "True if CHAR is a space, newline or the like."
   (member char '(#\Space #\Tab #\Return #\Page #\Newline)))
 
@@ -16,8 +17,8 @@
   (string-trim " " (with-output-to-string (stream)
                      (loop for previous = #\Space then char
                            for char across text
-                           for blank = (blank-p char)
-                           unless (and blank (blank-p previous))
+                           for blank = (blank-character-p char)
+                           unless (and blank (blank-character-p previous))
                              do (write-char (if blank #\Space char) stream)))))
 
 (defun cut (text length)
@@ -26,7 +27,7 @@
       (concatenate 'string (subseq text 0 (- length 3)) "...")
       text))
 
-(defun sentence (text)
+(defun add-full-stop (text)
   "Return TEXT with a full stop, unless TEXT ends with a question mark."
   (if (ends-with #\? text) text (format nil "~A." text)))
 
@@ -105,8 +106,8 @@ no-break spaces only if they have no other space. No-break spaces become spaces.
 
 ;;; A message quotes readably what is wrong, even if circular, very deep or megabytes long.
 
-(defconstant +shown-conses+ 150 "The largest number of conses of a datum that a message shows.")
-(defconstant +shown-characters+ 200 "The largest number of characters of a text that a message
+(defconstant +shown-cons-limit+ 150 "The largest number of conses of a datum that a message shows.")
+(defconstant +shown-character-limit+ 200 "The largest number of characters of a text that a message
 shows.")
 
 (defstruct (omission (:constructor make-omission (text)) (:copier nil))
@@ -124,9 +125,9 @@ shows.")
 
 (defun abridged-atom (atom)
   (typecase atom
-    (string (cut atom +shown-characters+))
-    (symbol (if (< +shown-characters+ (length (symbol-name atom)))
-                (make-omission (cut (symbol-name atom) +shown-characters+))
+    (string (cut atom +shown-character-limit+))
+    (symbol (if (< +shown-character-limit+ (length (symbol-name atom)))
+                (make-omission (cut (symbol-name atom) +shown-character-limit+))
                 atom))
     (integer (if (< 500 (integer-length atom))
                  (make-omission (format nil "an integer of ~D bits" (integer-length atom)))
@@ -146,7 +147,7 @@ shows.")
 
 (defun abridged (datum)
   "Return DATUM; if DATUM is long or circular, return its beginning, with dots for the rest."
-  (let ((left +shown-conses+))
+  (let ((left +shown-cons-limit+))
     (labels ((visit (datum)
                (cond ((atom datum) (abridged-atom datum))
                      ((minusp (decf left)) +more+)
@@ -205,7 +206,7 @@ the text says so."
   "Return NAME, a symbol or string, as a string in upper case."
   (string-upcase (string name)))
 
-(defun equal-names-p (a b)
+(defun %same-name-p (a b)
   "True if the symbols or strings A and B have the same name, regardless of package and case."
   (declare #.*hot*)
   (let ((a (if (symbolp a) (symbol-name a) (string a)))
@@ -215,7 +216,7 @@ the text says so."
 (declaim (inline same-name-p))
 (defun same-name-p (a b)
   "True if the symbols or strings A and B have the same name, regardless of package and case."
-  (or (eq a b) (equal-names-p a b)))
+  (or (eq a b) (%same-name-p a b)))
 
 (defun value-equal (a b)
   "True if A and B are the same attribute value: symbols of the same name, equal numbers, or lists
@@ -271,7 +272,7 @@ of such values (reading 38)."
                    (find other letters :test #'char-equal)))
             *similar-letters*)))
 
-(defun different-word-p (a b)
+(defun distinct-short-words-p (a b)
   "True if A and B are short names of equal length with one different letter, and the two letters
 do not sound alike. (SISE may be a misspelling of SIZE, but SIDE is another word.)"
   (and (= (length a) (length b))
@@ -287,7 +288,7 @@ two if both are long. In short names, and at the beginning, the two letters must
          (or (similar-letters-p (char a 0) (char b 0))
              (and (/= (length a) (length b)) (<= 3 shorter)))
          (<= 1 (edit-distance a b) (if (<= 8 shorter) 2 1))
-         (not (different-word-p a b)))))
+         (not (distinct-short-words-p a b)))))
 
 ;;; Natural order of names: box 2 before box 10.
 

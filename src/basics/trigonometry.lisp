@@ -78,10 +78,10 @@ to SIZE. Bind REST to SIZE minus the argument of that row."
     (nearest-double (round (ash 1 (* 2 *fixed-point-places*)) (ash (fixed-pi) -1)))
   :documentation "The number of right angles in a radian.")
 
-(defconstant +inverse-pi-bits+ 1400
+(defconstant +inverse-pi-bit-count+ 1400
   "The number of known bits of 2/pi. The largest double-float needs 1250.")
 (define-constant +bits-of-2/pi+
-    (let ((*fixed-point-places* +inverse-pi-bits+))
+    (let ((*fixed-point-places* +inverse-pi-bit-count+))
       (round (ash 1 (* 2 *fixed-point-places*)) (ash (fixed-pi) -1))))
 
 (defun reduce-large-angle (operator angle)
@@ -89,7 +89,7 @@ to SIZE. Bind REST to SIZE minus the argument of that row."
 it, and two numbers whose sum is the rest. OPERATOR rejects infinities."
   (unless (finite-p angle) (reject-argument operator 'angle angle +number-text+))
   (multiple-value-bind (digits exponent sign) (integer-decode-float angle)
-    (let* ((places (- +inverse-pi-bits+ exponent))
+    (let* ((places (- +inverse-pi-bit-count+ exponent))
            (turns (ldb (byte (+ places 2) 0) (* digits +bits-of-2/pi+)))
            (quarters (ash (+ turns (ash 1 (1- places))) (- places)))
            (rest (ash (- turns (ash quarters places)) (- *fixed-point-places* places)))
@@ -216,14 +216,14 @@ coefficients 1 to 6 of its Taylor series.")
   "Return the sine of ANGLE, in radians: a double-float with the same bits on every machine. (CL:SIN
 differs between machines.) Signals WRONG-ARGUMENT unless ANGLE is a real number."
   (check-number sine angle)
-  (result-in-last-cell put-sine (double angle)))
+  (call-cell-function put-sine (double angle)))
 
 (addition cosine)
 (defun cosine (angle)
   "Return the cosine of ANGLE, in radians, with the same bits on every machine. See SINE."
   (check-number cosine angle)
-  (result-in-last-cell put-cosine (double angle)))
+  (call-cell-function put-cosine (double angle)))
 
 (defun arctangent (y x)
   "Return the angle of (X, Y) from -pi to pi radians. The sign of a 0 matters, as for CL:ATAN."
-  (result-in-last-cell put-arctangent (double y) (double x)))
+  (call-cell-function put-arctangent (double y) (double x)))

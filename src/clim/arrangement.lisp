@@ -12,7 +12,7 @@
 (defconstant +title-height+ 17 "Height of the titles of displays, in pixels.")
 (defconstant +menus-height+ 20 "Height of the bar of menus, in pixels.")
 (defconstant +bar-height+ 26 "Height of the tool bar, in pixels.")
-(defconstant +strip-height+ 36 "Height of the status strip, in pixels.")
+(defconstant +status-strip-height+ 36 "Height of the status strip, in pixels.")
 (defconstant +prompt-rows+ 2 "The least number of rows of the input line.")
 (defconstant +prompt-height+ 36
   "Height of the input line when it has +PROMPT-ROWS+ rows, in pixels.")
@@ -82,7 +82,8 @@ wider if it shows plans, because plans have long lines."
 
 (defun transcript-height (preferences height)
   (let ((wanted (or (preferences-transcript-height preferences) (clamp (floor height 5) 80 260)))
-        (fixed (+ +menus-height+ +bar-height+ +splitter-width+ +prompt-height+ +strip-height+)))
+        (fixed (+ +menus-height+ +bar-height+ +splitter-width+ +prompt-height+
+                  +status-strip-height+)))
     (clamp (round wanted) 40 (max 40 (- height fixed 120)))))
 
 ;;; Sections.
@@ -93,9 +94,9 @@ pixels). If HEIGHT is enough, each section gets what it needs, and the plan or t
 the rest. Otherwise each gets a fair share."
   (cond ((null needs) '())
         ((<= (reduce #'+ needs :key #'second) height) (give-rest-to-section needs height))
-        (t (share-with-plan needs height))))
+        (t (share-height-with-plan needs height))))
 
-(defun share-with-plan (needs height)
+(defun share-height-with-plan (needs height)
   "Divide HEIGHT, which is less than NEEDS. The section of plans gets what it needs, but at most
 half of HEIGHT or what the others leave. The others get fair shares."
   (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
@@ -104,14 +105,14 @@ half of HEIGHT or what the others leave. The others get fair shares."
                           (max (floor height 2)
                                (- height (reduce #'+ others :key #'second))))))
           (cons (list 'plan share) (share-height others (- height share))))
-        (share-fairly needs height))))
+        (share-height-fairly needs height))))
 
 (defun height-of-whole-lines (height)
   "Return the height of the whole lines that fit in HEIGHT pixels, or of one line if none fits."
   (+ +section-top-margin+
      (* +line-height+ (max 1 (floor (- height +section-top-margin+) +line-height+)))))
 
-(defun share-fairly (needs height)
+(defun share-height-fairly (needs height)
   "Divide HEIGHT, which is not enough for NEEDS. Sections that need less than an equal share get
 what they need. The other sections get equally many whole lines."
   (let* ((fair (floor height (max 1 (length needs))))
@@ -120,7 +121,7 @@ what they need. The other sections get equally many whole lines."
     (if (null small)
         (share-lines needs fair height)
         (append small
-                (share-fairly large (- height (reduce #'+ small :key #'second)))))))
+                (share-height-fairly large (- height (reduce #'+ small :key #'second)))))))
 
 (defun share-lines (needs fair height)
   "Divide HEIGHT among NEEDS. Each section gets as many whole lines as FAIR pixels hold. The first
@@ -142,12 +143,12 @@ sections get one of the remaining lines each, and the last one gets the remainin
     (loop for share in shares
           collect (if (eq share receiver) (list (first share) (+ (second share) rest)) share))))
 
-(defun place-section (section left top width height)
+(defun section-and-title-places (section left top width height)
   "Return the places of the title of SECTION and of the display below it, HEIGHT pixels high."
   (list (list (title-pane-name section) left top width +title-height+)
         (list section left (+ top +title-height+) width (max 0 height))))
 
-(defun place-sections (sections needs folded left top width height)
+(defun section-column-places (sections needs folded left top width height)
   "Return the places of SECTIONS in a column. NEEDS is a function from a section to the height that
 it needs, in pixels."
   (let* ((open (set-difference sections folded))
@@ -158,21 +159,21 @@ it needs, in pixels."
                                room)))
     (loop for section in sections
           for own = (or (second (find section shares :key #'first)) 0)
-          append (place-section section left top width own)
+          append (section-and-title-places section left top width own)
           do (incf top (+ +title-height+ own)))))
 
 ;;; The whole.
 
-(defun place-plan-column (preferences width left top height down)
+(defun plan-column-places (preferences width left top height down)
   "Return the places of the column of plans and of the splitter to its right. The column begins at
 LEFT and is HEIGHT pixels high; the splitter is DOWN pixels high."
   (let ((plan (plan-width preferences width)))
     (if (plusp plan)
-        (append (place-section 'plan left top plan (- height +title-height+))
+        (append (section-and-title-places 'plan left top plan (- height +title-height+))
                 (list (list 'plan-splitter (+ left plan) top +splitter-width+ down)))
         (list (list 'plan-splitter left top 0 0)))))
 
-(defun place-displays (preferences needs width top height down)
+(defun display-places (preferences needs width top height down)
   "Return the places of the displays. The world and the column of plans begin at TOP and are HEIGHT
 pixels high. The column of sections is DOWN pixels high."
   (let* ((column (details-width preferences width))
@@ -180,19 +181,19 @@ pixels high. The column of sections is DOWN pixels high."
          (plan (if own-p (+ (plan-width preferences width) +splitter-width+) 0))
          (world (- width column plan +splitter-width+))
          (left (+ world +splitter-width+)))
-    (append (place-section 'world 0 top world (- height +title-height+))
+    (append (section-and-title-places 'world 0 top world (- height +title-height+))
             (list (list 'side-splitter world top +splitter-width+ (if own-p height down)))
-            (place-plan-column preferences width left top height down)
-            (place-sections (column-sections preferences width) needs
-                            (preferences-folded preferences)
-                            (+ left plan) top column down))))
+            (plan-column-places preferences width left top height down)
+            (section-column-places (column-sections preferences width) needs
+                                   (preferences-folded preferences)
+                                   (+ left plan) top column down))))
 
-(defun place-transcript (width top bottom)
+(defun transcript-places (width top bottom)
   "Return the places of the transcript and of the splitter above it. The splitter begins at TOP, and
 the transcript ends at BOTTOM."
   (let ((low (+ top +splitter-width+)))
     (cons (list 'low-splitter 0 top width +splitter-width+)
-          (place-section 'transcript 0 low width (- bottom low +title-height+)))))
+          (section-and-title-places 'transcript 0 low width (- bottom low +title-height+)))))
 
 (defun prompt-height (rows transcript)
   "Return the height in pixels of an input line with ROWS rows. Additional rows take their height
@@ -201,12 +202,12 @@ from the transcript, TRANSCRIPT pixels high, but the transcript keeps at least 4
          +prompt-height+
          (max +prompt-height+ (+ +prompt-height+ (- transcript +title-height+ 40)))))
 
-(defun arrange (preferences needs width height &optional (rows +prompt-rows+))
+(defun compute-places (preferences needs width height &optional (rows +prompt-rows+))
   "Return the places of all parts of a window of WIDTH x HEIGHT pixels with the layout PREFERENCES.
 NEEDS is a function from a section to the height that it needs, in pixels. The input line has ROWS
 rows; additional rows take room from the transcript."
   (let* ((top (+ +menus-height+ +bar-height+))
-         (strip (- height +strip-height+))
+         (strip (- height +status-strip-height+))
          (transcript (transcript-height preferences height))
          (typed (prompt-height rows transcript))
          (prompt (- strip typed))
@@ -215,8 +216,8 @@ rows; additional rows take room from the transcript."
          (column (+ (details-width preferences width) +splitter-width+)))
     (append (list (list 'menus 0 0 width +menus-height+)
                   (list 'bar 0 +menus-height+ width +bar-height+))
-            (place-displays preferences needs width top (- splitter top)
+            (display-places preferences needs width top (- splitter top)
                             (- (if down-p prompt splitter) top))
-            (place-transcript (if down-p (- width column) width) splitter prompt)
+            (transcript-places (if down-p (- width column) width) splitter prompt)
             (list (list 'interactor 0 prompt width typed)
-                  (list 'strip 0 strip width +strip-height+)))))
+                  (list 'strip 0 strip width +status-strip-height+)))))

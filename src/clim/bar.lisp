@@ -89,7 +89,7 @@ as argument; they return the label, and whether the button is on."
                 (simulation-tick simulation)
                 (and snapshot (snapshot-tick snapshot))))))
 
-(defun waiting-answers-text (window)
+(defun waiting-programs-text (window)
   "Return a text on how many programs wait for an answer at the prompt of WINDOW, or NIL if none."
   (let ((count (length (ars-magna.cli:waiting-break-texts (window-session window)))))
     (when (plusp count)
@@ -100,18 +100,18 @@ as argument; they return the label, and whether the button is on."
   (format nil "~A  ~A~:[~;; a program waits for your answer~]~@[; ~A~]" (tick-text window)
           (progress-text (watcher-progress (window-watcher window)))
           (line-awaiting-input (window-conversation window))
-          (waiting-answers-text window)))
+          (waiting-programs-text window)))
 
-(defun strip-lines (window)
+(defun status-strip-lines (window)
   (list (time-text window) (window-hint window)))
 
 (defmethod pane-content ((pane strip-pane))
-  (list (strip-lines (window-of pane)) (multiple-value-list (pane-size pane))))
+  (list (status-strip-lines (window-of pane)) (multiple-value-list (pane-size pane))))
 
 (defmethod paint ((pane strip-pane))
   (let ((columns (max 4 (floor (- (pane-size pane) 12) +character-width+))))
     (with-pane-canvas (canvas pane)
-      (loop for line in (strip-lines (window-of pane))
+      (loop for line in (status-strip-lines (window-of pane))
             for y from 14 by +line-height+
             do (draw-glyphs canvas draw-gcontext* 6 y (cut line columns))))))
 

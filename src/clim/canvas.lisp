@@ -42,17 +42,17 @@
       (loop for length in (if (listp dashes) dashes (list dashes dashes))
             collect (* (canvas-magnification canvas) length)))))
 
-(defun extend-reach (canvas left top right bottom)
+(defun extend-bounding-box (canvas left top right bottom)
   (let ((reach (canvas-reach canvas)))
     (when reach
       (setf (canvas-reach canvas)
             (list (min (first reach) left) (min (second reach) top)
                   (max (third reach) right) (max (fourth reach) bottom))))))
 
-(defun extend-reach-over-points (canvas points)
+(defun extend-bounding-box-over-points (canvas points)
   (when (canvas-reach canvas)
     (loop for (x y) on points by #'cddr
-          do (extend-reach canvas x y x y))))
+          do (extend-bounding-box canvas x y x y))))
 
 ;;; Painting.
 
@@ -63,7 +63,7 @@
 
 (defmethod paint-rectangles ((canvas clim-canvas) gcontext rectangles fill-p)
   (let ((corners (corners-of-rectangles rectangles)))
-    (extend-reach-over-points canvas corners)
+    (extend-bounding-box-over-points canvas corners)
     (clim:draw-rectangles* (canvas-medium canvas) corners
                            :filled (and fill-p t)
                            :ink (clim-ink (gcontext-foreground gcontext))
@@ -93,14 +93,14 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
             (max 1 (- width thickness)) (max 1 (- height thickness)))))
 
 (defmethod paint-arc ((canvas clim-canvas) gcontext x y width height start extent fill-p)
-  (extend-reach canvas x y (+ x width) (+ y height))
+  (extend-bounding-box canvas x y (+ x width) (+ y height))
   (if fill-p
-      (paint-arc-in canvas gcontext x y width height start extent t)
+      (paint-arc-in-box canvas gcontext x y width height start extent t)
       (multiple-value-bind (x y width height)
           (outline-box x y width height (max 1 (gcontext-line-width gcontext)))
-        (paint-arc-in canvas gcontext x y width height start extent nil))))
+        (paint-arc-in-box canvas gcontext x y width height start extent nil))))
 
-(defun paint-arc-in (canvas gcontext x y width height start extent fill-p)
+(defun paint-arc-in-box (canvas gcontext x y width height start extent fill-p)
   (if (>= (abs extent) (- (* 2 pi) 1d-9))
       (paint-ellipse canvas gcontext x y width height fill-p)
       (let ((points (arc-points x y width height start extent)))
@@ -110,7 +110,7 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
 
 (defmethod paint-path ((canvas clim-canvas) gcontext points fill-p)
   (let ((points (coerce points 'list)))
-    (extend-reach-over-points canvas points)
+    (extend-bounding-box-over-points canvas points)
     (clim:draw-polygon* (canvas-medium canvas) points
                         :filled (and fill-p t) :closed (and fill-p t)
                         :ink (clim-ink (gcontext-foreground gcontext))
@@ -119,7 +119,7 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
 
 (defmethod paint-segments ((canvas clim-canvas) gcontext segments)
   (let ((points (coerce segments 'list)))
-    (extend-reach-over-points canvas points)
+    (extend-bounding-box-over-points canvas points)
     (clim:draw-lines* (canvas-medium canvas) points
                       :ink (clim-ink (gcontext-foreground gcontext))
                       :line-thickness (clim-line-thickness canvas gcontext)
@@ -136,7 +136,7 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
     (or (null bottom) (<= 10 y (- bottom 3)))))
 
 (defmethod paint-string ((canvas clim-canvas) gcontext x y string)
-  (extend-reach canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
+  (extend-bounding-box canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
   (when (text-uncut-p canvas y)
     (clim:draw-text* (canvas-medium canvas) string x y
                      :text-style (svref *text-styles* (1- (canvas-magnification canvas)))
@@ -168,7 +168,7 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
            (funcall function))
       (setf (canvas-reach canvas) reach
             (canvas-seen canvas) seen)
-      (extend-reach canvas x y right bottom))))
+      (extend-bounding-box canvas x y right bottom))))
 
 (defmethod call-with-origin (function (canvas clim-canvas) x y)
   (incf (canvas-dx canvas) x)
@@ -187,7 +187,7 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
     (multiple-value-prog1 (funcall function)
       (destructuring-bind (left top right bottom) (canvas-reach canvas)
         (setf (canvas-reach canvas) outer)
-        (extend-reach canvas left top right bottom)
+        (extend-bounding-box canvas left top right bottom)
         (let ((box (visible-part canvas (box-on-medium canvas left top right bottom))))
           (when box (push (cons subject box) (canvas-subjects canvas))))))))
 

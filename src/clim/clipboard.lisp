@@ -17,7 +17,7 @@
       (rest (clim:port-server-path port))
     (xlib:open-display host :display display-id :protocol protocol)))
 
-(defun make-mailbox (display)
+(defun make-transfer-window (display)
   "Return an invisible X window through which DISPLAY transfers texts."
   (xlib:create-window :parent (xlib:screen-root (xlib:display-default-screen display))
                       :x 0 :y 0 :width 1 :height 1 :event-mask '(:property-change)))
@@ -27,7 +27,7 @@
 (defun reject-paste (reason)
   (reject-use "~A. Save the text in a file, and type (load \"FILE\")." reason))
 
-(defun octets-in (mailbox)
+(defun read-property-octets (mailbox)
   "Return the contents of the X window MAILBOX, as a string of octets."
   (with-output-to-string (out)
     ;; The X server hands it over in parts; it counts in fours.
@@ -45,11 +45,11 @@
 them. The type is NIL if MAILBOX is empty, and :INCR if a text will come in pieces."
   (let ((type (nth-value 1 (xlib:get-property mailbox :mcclim :end 0))))
     (multiple-value-prog1
-        (values (if (member type '(nil :incr)) "" (octets-in mailbox))
+        (values (if (member type '(nil :incr)) "" (read-property-octets mailbox))
                 type)
       (when type (xlib:delete-property mailbox :mcclim)))))
 
-(defun await-answer (display)
+(defun await-selection-answer (display)
   "Wait until the program that owns the selection answers on DISPLAY. Return T if the program has
 sent the selection, :NONE if it cannot, and NIL if it does not answer in time."
   (xlib:event-case (display :timeout +transfer-timeout+ :discard-p t :force-output-p t)
@@ -75,7 +75,7 @@ if a piece does not come or the text is too long."
 (defun fetch-selection-as (type selection display mailbox)
   "Return the text of SELECTION in the X type TYPE, a string of octets, or NIL if there is no text."
   (xlib:convert-selection selection type mailbox :mcclim nil)
-  (ecase (await-answer display)
+  (ecase (await-selection-answer display)
     ((nil) (reject-paste "The program with the text to be pasted does not answer"))
     (:none nil)
     ((t) (multiple-value-bind (octets type) (take-next-piece mailbox)
@@ -89,7 +89,7 @@ NIL if there is no text. Signals MISUSE if the text does not arrive or is too lo
   (:method (port selection) (declare (ignore port selection)) nil)
   (:method ((port clim-clx:clx-port) selection)
     (let ((display (connect-to-x-server port)))
-      (unwind-protect (let* ((mailbox (make-mailbox display))
+      (unwind-protect (let* ((mailbox (make-transfer-window display))
                              (octets (fetch-selection-as :utf8_string selection display mailbox)))
                         (if octets
                             (utf-8-decoded octets)
@@ -176,13 +176,13 @@ something and all transfers are complete or given up."
     (ignore-errors (xlib:close-display display :abort t))))
 
 (defun claim-selections (offered display selections)
-  (let ((mailbox (make-mailbox display)))
+  (let ((mailbox (make-transfer-window display)))
     (dolist (selection selections)
       (xlib:set-selection-owner display selection mailbox nil)
       (when (xlib:window-equal mailbox (xlib:selection-owner display selection))
         (push selection (offered-text-selections offered))))))
 
-(defgeneric share-text (port text selections)
+(defgeneric offer-text (port text selections)
   (:documentation "Offer TEXT to other programs on the X server of PORT as each of SELECTIONS, a
 list of :PRIMARY or :CLIPBOARD or both. The offer ends when another program copies something.")
   (:method (port text selections) (declare (ignore port text selections)))

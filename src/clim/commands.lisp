@@ -10,7 +10,7 @@
 
 ;;; Running. A fork or trial is not live: there the prompt lets ticks pass.
 
-(defun call-if-live (window function line)
+(defun call-live-or-send-line (window function line)
   "Call FUNCTION with the simulation of WINDOW if it is live. Otherwise send LINE to the prompt."
   (let ((simulation (window-simulation window)))
     (if (live-p simulation)
@@ -18,10 +18,10 @@
         (run-line-at-prompt (window-conversation window) line))))
 
 (define-window-command (com-pause "Pause") (window)
-  (call-if-live window #'pause "pause"))
+  (call-live-or-send-line window #'pause "pause"))
 
 (define-window-command (com-resume "Resume") (window)
-  (call-if-live window #'resume "resume"))
+  (call-live-or-send-line window #'resume "resume"))
 
 (define-window-command (com-pause-or-resume "Pause or go on") (window)
   (if (paused-until-resume-p (window-simulation window)) (com-resume) (com-pause)))
@@ -40,7 +40,7 @@
 (define-window-command (com-step "Step") (window)
   (if (ars-magna.cli:simulator-broken-p (window-session window))
       (request-answer-first (window-conversation window) "Step")
-      (call-if-live window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
+      (call-live-or-send-line window (lambda (simulation) (step-ticks 1 simulation)) "step 1")))
 
 (defun change-rate-to (window rate)
   "Set the tick rate of the run of WINDOW to RATE, if its ticks pass by themselves."
@@ -57,7 +57,7 @@
           (t (write-in-window window "Time passes in this run only while commands need it, so ~
                                       there is no tick rate.~%")))))
 
-(defun change-rate (window factor)
+(defun multiply-rate (window factor)
   (let ((rate (chosen-rate (window-simulation window))))
     (if (eq rate :free)
         (write-in-window window "Ticks pass as fast as possible. The line RATE sets a number of ~
@@ -65,10 +65,10 @@
         (change-rate-to window (clamp (* (or rate 1) factor) 1/8 100000)))))
 
 (define-window-command (com-faster "Twice as fast") (window)
-  (change-rate window 2))
+  (multiply-rate window 2))
 
 (define-window-command (com-slower "Half as fast") (window)
-  (change-rate window 1/2))
+  (multiply-rate window 1/2))
 
 (define-window-command (com-default-rate "Default rate") (window)
   (change-rate-to window *default-rate*))
@@ -123,7 +123,7 @@
 (define-window-command (com-color "Colours on or off") (window)
   (toggle-color window))
 
-(defun button-left (window command)
+(defun button-left-edge (window command)
   "Return the distance in pixels from the left edge of the tool bar of WINDOW to the button that
 calls COMMAND. Return 8 if no button calls COMMAND."
   (loop for (subject left) in (pane-subjects (pane-named window 'bar))
@@ -131,7 +131,8 @@ calls COMMAND. Return 8 if no button calls COMMAND."
         finally (return 8)))
 
 (defun open-popup-below-bar (window rows opener)
-  (open-popup window rows (button-left window opener) (+ +menus-height+ +bar-height+ 2) opener))
+  (open-popup window rows (button-left-edge window opener) (+ +menus-height+ +bar-height+ 2)
+              opener))
 
 (define-window-command (com-layers "Layers") (window)
   (open-popup-below-bar window (layer-rows window) 'com-layers))
@@ -147,7 +148,7 @@ calls COMMAND. Return 8 if no button calls COMMAND."
 (defun save-window-picture (window type)
   "Save a picture of the displays of WINDOW in the current directory, in a file of TYPE."
   (let ((file (save-snapshot (window-snapshot window) (window-robot window)
-                             (format nil "~(~A~)-~6,'0D.~A" (shown-robot window)
+                             (format nil "~(~A~)-~6,'0D.~A" (shown-robot-name window)
                                      (snapshot-tick (window-snapshot window)) type)
                              :layers (window-layers window)
                              :in-color (window-color-p window)

@@ -15,7 +15,7 @@
         (eq thread (current-thread))
         (eq old (watcher-simulation (window-watcher window))))))
 
-(defun robot-after-switch (window new)
+(defun robot-name-after-switch (window new)
   "Return the name of the robot that WINDOW will show in the run NEW: the robot that the prompt of
 WINDOW commands, else a robot with the name of the robot shown before, else another. Return NIL if
 other windows show all robots of NEW."
@@ -24,12 +24,12 @@ other windows show all robots of NEW."
     (find-if (lambda (name)
                (and (member name names) (not (shown-in-other-window-p window name new))))
              (append (and own-p (list ars-magna.cli:*prompt-robot*))
-                     (list (shown-robot window) ars-magna.cli:*prompt-robot*)
+                     (list (shown-robot-name window) ars-magna.cli:*prompt-robot*)
                      names))))
 
 (defun switch-window (window new)
   "Make WINDOW show the run NEW from now on, if NEW has a robot that no other window shows."
-  (let ((name (robot-after-switch window new)))
+  (let ((name (robot-name-after-switch window new)))
     (when name
       (record-shown-robot window name)
       (watch-simulation (window-watcher window) new)
@@ -40,7 +40,7 @@ other windows show all robots of NEW."
   "Make the windows that follow the prompt show the run NEW, which the prompt has entered from OLD."
   (declare (ignore session))
   (when new
-    (dolist (window (open-windows))
+    (dolist (window (open-window-list))
       (let ((watcher (window-watcher window)))
         (cond ((eq new (watcher-simulation watcher))
                (unless (live-p new) (publish-snapshot watcher new)))
@@ -53,9 +53,9 @@ other windows show all robots of NEW."
 
 ;;; A plan of a live run breaks in a separate thread, while ticks pass.
 
-(defun update-own-run-windows ()
+(defun update-windows-of-this-thread ()
   "Update the windows that show the run whose plans or ticks this thread executes."
-  (dolist (window (open-windows))
+  (dolist (window (open-window-list))
     (let* ((watcher (window-watcher window)) (simulation (watcher-simulation watcher)))
       (when simulation
         (when (update-look-of-own-plans (watcher-plans watcher))
@@ -63,4 +63,4 @@ other windows show all robots of NEW."
         (when (has-custody-p (timeline-custody (simulation-timeline simulation)))
           (publish-snapshot watcher simulation))))))
 
-(add-listener ars-magna.cli:*break-hooks* update-own-run-windows)
+(add-listener ars-magna.cli:*break-hooks* update-windows-of-this-thread)

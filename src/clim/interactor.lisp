@@ -17,7 +17,7 @@
   "Return a text about the running LINE and how to end it. CONTROL is a format string for LINE."
   (format nil "~@? -- Control-C, or Interrupt in the menu Run, ends it." control (cut line 40)))
 
-(defun waiting-label (count)
+(defun waiting-lines-label (count)
   (format nil "~[~:;~:*~D line~:P wait~:*~[~;s~:;~]; Backspace removes the last line. ~]Next> "
           count))
 
@@ -57,7 +57,7 @@ above it and its ink. Return NIL if PANE is empty."
           (busy (multiple-value-bind (count text point)
                     (ars-magna.cli:type-ahead-state
                      (ars-magna.cli:session-input (conversation-session conversation)))
-                  (list (waiting-label count) text point
+                  (list (waiting-lines-label count) text point
                         (running-line-text "Running ~A" busy) :red))))))
 
 (defun needed-rows (pane)
@@ -65,8 +65,9 @@ above it and its ink. Return NIL if PANE is empty."
       (interactor-contents pane)
     (declare (ignore ink))
     (+ (if note 1 0)
-       (length (ars-magna.cli:rows-to-show (ars-magna.cli:unpainted-text (or label "")) text point
-                                           (columns-and-rows pane) 1000)))))
+       (length (ars-magna.cli:visible-rows-of-line (ars-magna.cli:unpainted-text (or label "")) text
+                                                   point
+                                                   (columns-and-rows pane) 1000)))))
 
 (defmethod pane-content ((pane interactor-pane))
   (list (interactor-contents pane) (focused-p pane)))
@@ -77,12 +78,12 @@ above it and its ink. Return NIL if PANE is empty."
   (draw-rectangle canvas draw-gcontext* (column-x column) (+ 2 (* row +line-height+))
                   (if focused-p 2 (1- +character-width+)) (- +line-height+ 2) focused-p))
 
-(defun paint-line (canvas pane label text point top)
+(defun paint-input-line (canvas pane label text point top)
   "Paint the input line from row TOP on: LABEL, then TEXT, with the cursor at POINT of TEXT."
   (multiple-value-bind (columns height) (columns-and-rows pane)
     (multiple-value-bind (rows row column)
-        (ars-magna.cli:rows-to-show (ars-magna.cli:unpainted-text label) text point
-                                    columns (max 1 (- height top)))
+        (ars-magna.cli:visible-rows-of-line (ars-magna.cli:unpainted-text label) text point
+                                            columns (max 1 (- height top)))
       (loop for (string) in rows
             for y from (+ 14 (* top +line-height+)) by +line-height+
             do (paint-glyphs-at-column canvas string 0 y nil))
@@ -93,7 +94,7 @@ above it and its ink. Return NIL if PANE is empty."
     (destructuring-bind (&optional label text point note ink) (interactor-contents pane)
       (when note
         (paint-glyphs-at-column canvas (cut note (max 4 (columns-and-rows pane))) 0 14 ink))
-      (when label (paint-line canvas pane label text point (if note 1 0))))))
+      (when label (paint-input-line canvas pane label text point (if note 1 0))))))
 
 ;;; Keys.
 
@@ -132,7 +133,7 @@ above it and its ink. Return NIL if PANE is empty."
 (defun copy-text (window)
   "Copy the text selected in the transcript of WINDOW, or the whole transcript if none is selected."
   (let ((pane (pane-named window 'transcript)))
-    (share-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
+    (offer-text (clim:port pane) (selected-text pane) '(:clipboard :primary))
     (unless (selection-bounds pane)
       (show-hint window "Nothing was selected, so all text of the commands has been copied."))))
 
@@ -153,7 +154,7 @@ above it and its ink. Return NIL if PANE is empty."
             ((or (and control-p shift-p (is-p #\v)) (and shift-p (eq name :insert)))
              (lambda (window) (paste-text window :clipboard)))
             ((eq name :escape) #'close-popup)
-            ((eq name :f10) #'open-first-menu)
+            ((eq name :f10) #'toggle-first-menu)
             ((eq name :prior) (lambda (window) (scroll-page (pane-named window 'transcript) -1)))
             ((eq name :next) (lambda (window) (scroll-page (pane-named window 'transcript) 1)))))))
 
@@ -184,7 +185,7 @@ above it and its ink. Return NIL if PANE is empty."
   (let ((sheet (clim:port-keyboard-input-focus port)))
     (and sheet (robot-window-of sheet))))
 
-(defun direct-keys-by-event (port event)
+(defun focus-window-of-event (port event)
   "Direct the keys of PORT to the window of EVENT, if that window shows a robot."
   (let ((window (robot-window-of (clim:event-sheet event))) (before (focused-window port)))
     (unless (member window (list before nil))
@@ -197,7 +198,7 @@ above it and its ink. Return NIL if PANE is empty."
 (defmethod clim:distribute-event :before ((port clim:basic-port) (event clim:event))
   (when (typep event '(or clim:keyboard-event clim:pointer-button-press-event
                        clime:window-manager-focus-event))
-    (direct-keys-by-event port event)))
+    (focus-window-of-event port event)))
 
 (defmethod clim:handle-event :around ((sheet clime:top-level-sheet-mixin)
                                       (event clime:window-manager-focus-event))

@@ -41,7 +41,7 @@ Return NIL if it is no arrow key."
         (shown (shown-input-line (window-conversation window))))
     (multiple-value-bind (dx dy) (arrow-key-offset key-name)
       (cond ((handle-key-in-popup window key-name) t)
-            ((eq key-name :f10) (open-first-menu window) t)
+            ((eq key-name :f10) (toggle-first-menu window) t)
             ((and (or (window-typing-p window) (and shown (string/= "" (second shown))))
                   character
                   (graphic-char-p character))
@@ -109,9 +109,9 @@ no separate symbol for AltGr. The function SYMBOL-AT returns the symbol of the k
   "The name of McCLIM's function that returns the character, modifiers and name of a key, or NIL.")
 
 (defvar *mcclim-key-reader* (and *mcclim-key-reader-name* (fdefinition *mcclim-key-reader-name*))
-  "McCLIM's original function that READ-KEY replaces, or NIL.")
+  "McCLIM's original function that DECODE-X-KEY replaces, or NIL.")
 
-(defun read-key (port kind code state)
+(defun decode-x-key (port kind code state)
   "Return the character, modifiers and name of the key with the X key code CODE. KIND is the kind of
 the event, a press or a release, and STATE the X keyboard state."
   (let* ((display (clim-clx:clx-port-display port))
@@ -125,7 +125,7 @@ the event, a press or a release, and STATE the X keyboard state."
                 (funcall (mcclim-key-function "KEYSYM-TO-KEYSYM-NAME") symbol))
         (funcall *mcclim-key-reader* port kind code state))))
 
-(when *mcclim-key-reader-name* (setf (fdefinition *mcclim-key-reader-name*) #'read-key))
+(when *mcclim-key-reader-name* (setf (fdefinition *mcclim-key-reader-name*) #'decode-x-key))
 
 ;;; Dead keys.
 

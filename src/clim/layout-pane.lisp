@@ -58,13 +58,14 @@ them.")
             collect (list section
                           (needed-section-height (pane-named window section) section column)))))
 
-(defun need-function (needs)
+(defun needed-height-function (needs)
   "Return a function of a section: its height in NEEDS, lists (section pixels), or 0."
   (lambda (section) (or (second (assoc section needs)) 0)))
 
-(defun arrange-layout (layout needs)
+(defun compute-layout-places (layout needs)
   "Return the places of all parts of LAYOUT. NEEDS are lists (section pixels) of needed heights."
-  (multiple-value-call #'arrange (pane-preferences layout) (need-function needs) (pane-size layout)
+  (multiple-value-call #'compute-places (pane-preferences layout) (needed-height-function needs)
+                       (pane-size layout)
     (input-line-rows layout)))
 
 (defun input-line-rows (layout)
@@ -80,14 +81,14 @@ section of plans is ignored, because it takes any height."
         always (or (eq section 'plan)
                    (<= pixels (fifth (assoc section places))))))
 
-(defun lasting-needs (layout)
+(defun greatest-needs-so-far (layout)
   "Return lists (section pixels): the height for each section of LAYOUT. It is the most that the
 section has needed so far, or its present need if the layout has room only for present needs."
   (let* ((now (current-needs layout))
-         (before (need-function (pane-needed layout)))
+         (before (needed-height-function (pane-needed layout)))
          (most (loop for (section pixels) in now
                      collect (list section (max pixels (funcall before section))))))
-    (flet ((enough-for-all-p (needs) (needs-met-p (arrange-layout layout needs) now)))
+    (flet ((enough-for-all-p (needs) (needs-met-p (compute-layout-places layout needs) now)))
       (if (and (not (enough-for-all-p most)) (enough-for-all-p now))
           now
           most))))
@@ -95,10 +96,10 @@ section has needed so far, or its present need if the layout has room only for p
 (defun places-of-parts (layout)
   "Return the places of all parts of LAYOUT for the user's preferences and the sections' needs."
   (let* ((window (clim:pane-frame layout))
-         (shown (list (window-simulation window) (shown-robot window))))
+         (shown (list (window-simulation window) (shown-robot-name window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
       (setf (pane-needed layout) '())))
-  (arrange-layout layout (setf (pane-needed layout) (lasting-needs layout))))
+  (compute-layout-places layout (setf (pane-needed layout) (greatest-needs-so-far layout))))
 
 (defun place-parts (layout places)
   (let ((window (clim:pane-frame layout)))
@@ -205,7 +206,7 @@ LAYOUT.")
     (declare (ignore x))
     (setf (preferences-transcript-height preferences)
           (max 40 (- (nth-value 1 (pane-size layout))
-                     y +splitter-width+ +prompt-height+ +strip-height+)))))
+                     y +splitter-width+ +prompt-height+ +status-strip-height+)))))
 
 (defmethod pane-content ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
 
@@ -241,8 +242,8 @@ and the robot, if the run has several robots."
         (simulation (window-simulation window)))
     (format nil "World~@[: ~(~A~)~]~@[, ~A~]~@[, ~A of ~D robots~]" (and map (map-name map))
             (and simulation (ars-magna.cli:trial-or-fork-text simulation))
-            (and (rest (window-robots window)) (shown-robot window))
-            (length (window-robots window)))))
+            (and (rest (window-robot-names window)) (shown-robot-name window))
+            (length (window-robot-names window)))))
 
 (defun section-title (window section)
   (case section

@@ -21,7 +21,7 @@
               (assoc :general *prompt-menu-titles*))))
 
 (defun prompt-line-items (group)
-  (loop for line in (sort (copy-list (ars-magna.cli:all-lines)) #'string<
+  (loop for line in (sort (copy-list (ars-magna.cli:all-line-commands)) #'string<
                           :key #'ars-magna.cli:line-name)
         when (string= group (prompt-menu-title line))
           collect (let ((name (ars-magna.cli:line-name line)))
@@ -30,7 +30,7 @@
 (defun choose-prompt-line (window name)
   "Run the prompt line NAME if it has no parameters, else put it in the input line for arguments."
   (let ((conversation (window-conversation window)) (text (string-downcase name)))
-    (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line name))
+    (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line-command name))
            (replace-input-line conversation (format nil "~A " text))
            (focus-and-repaint (pane-named window 'interactor)))
           (t (run-line-at-prompt conversation text)))))
@@ -123,11 +123,11 @@
           for menu in *menus*
           do (setf x (draw-menu-title canvas menu x (eq menu opener))))))
 
-(defun menu-left (pane menu)
+(defun menu-left-edge (pane menu)
   (second (assoc menu (pane-subjects pane))))
 
 (defun open-bar-menu (pane menu)
-  (open-menu (window-of pane) menu (floor (menu-left pane menu)) +menus-height+)
+  (open-menu (window-of pane) menu (floor (menu-left-edge pane menu)) +menus-height+)
   (repaint-if-changed pane))
 
 (defun menu-at (pane x y) (subject-at (pane-subjects pane) x y))
@@ -189,7 +189,7 @@ highlight the first row, or the last if STEP is negative. Return true if POPUP h
         (:left (open-neighbouring-menu window -1))
         ((:return :kp-enter) (choose-highlighted-row popup))))))
 
-(defun open-first-menu (window)
+(defun toggle-first-menu (window)
   "Open the first menu of the menu bar of WINDOW. If a menu is open, close it instead."
   (unless (menu-p (close-popup window))
     (open-bar-menu (pane-named window 'menus) (first *menus*))

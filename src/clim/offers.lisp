@@ -37,10 +37,10 @@ format string for the camera's number, and LINE is one for the number and ARGUME
 
 ;;; Things.
 
-(defun find-thing-form (image)
+(defun find-thing-form-text (image)
   (format nil "(find-thing ~S)" (subject-title image)))
 
-(defun designators-of (image window)
+(defun designator-numbers-of (image window)
   (loop for designator in (robot-image-designators (window-robot window))
         when (equal (subject-key image) (subject-key (designator-image-denotation designator)))
           collect (designator-image-number designator)))
@@ -52,7 +52,7 @@ format string for the camera's number, and LINE is one for the number and ARGUME
 
 (defun next-to-robot-p (image window)
   "True if the thing of IMAGE is on the floor and within reach of the robot of WINDOW."
-  (let ((robot (find (shown-robot window) (simulation-robots (window-simulation window))
+  (let ((robot (find (shown-robot-name window) (simulation-robots (window-simulation window))
                      :key #'robot-name)))
     (and robot
          (on-floor-p image window)
@@ -147,14 +147,14 @@ for the numbers of hand and bin."
         :key #'thing-image-thing))
 
 (defmethod offers ((image thing-image) window)
-  (let ((numbers (designators-of image window)))
+  (let ((numbers (designator-numbers-of image window)))
     (append (when (on-floor-p image window)
               (list (go-there-offer (thing-image-x image) (thing-image-y image))))
             (held-offers image window)
             (search-offers image window)
             (start-tracking-offers numbers window)
             (tracked-offers numbers window :held-p (hand-image-holding image window))
-            (inspection-offers (find-thing-form image)))))
+            (inspection-offers (find-thing-form-text image)))))
 
 ;;; Designators and parts.
 

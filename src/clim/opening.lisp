@@ -27,7 +27,7 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
     (set-initial-lines transcript (window-state-lines state))
     (when (window-state-left-run-p state)
       (write-to-transcript transcript
-                           (format nil "From here on: ~A in ~A.~%" (shown-robot window)
+                           (format nil "From here on: ~A in ~A.~%" (shown-robot-name window)
                                    (ars-magna.cli:run-description (window-simulation window)))))
     (when (window-state-typed state) (pass-key conversation (window-state-typed state)))))
 
@@ -49,7 +49,7 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
 window of its robot."
   (destructuring-bind (settings state)
       (with-lock (*last-settings-lock*)
-        (list *last-settings* (rest (assoc (shown-robot window) *window-states*))))
+        (list *last-settings* (rest (assoc (shown-robot-name window) *window-states*))))
     (when settings
       (destructuring-bind (layers color-p preferences) settings
         (setf (window-layers window) layers
@@ -68,14 +68,14 @@ window of its robot."
 (defvar *windows-lock* (make-lock "windows"))
 (defvar *ports* '() "CLIM's ports on which windows were opened.")
 
-(defun open-windows ()
+(defun open-window-list ()
   (with-lock (*windows-lock*) (copy-list *windows*)))
 
 (defun close-window (window)
   "Close WINDOW. The simulator continues. Any thread may call this. Return no values."
   (call-in-window #'clim:frame-exit window))
 
-(defun show-in-front (window)
+(defun raise-window (window)
   "Raise WINDOW above other windows, and show it if it is an icon."
   (let ((sheet (clim:frame-top-level-sheet window)))
     (climb:port-enable-sheet (clim:port sheet) sheet)
@@ -92,7 +92,7 @@ window of its robot."
 (defun window-session (window)
   (conversation-session (window-conversation window)))
 
-(defun clear-lost-prompt (window)
+(defun end-lines-of-lost-prompt (window)
   "The prompt of WINDOW has been lost. End its running line, its waiting lines and its break. Return
 a text about what was ended, to append to a sentence."
   (let* ((session (window-session window))
@@ -115,7 +115,7 @@ a text about what was ended, to append to a sentence."
 fork, it is the run outside, otherwise the run that WINDOW shows."
   (let ((simulation (window-simulation window)))
     (if (ars-magna.cli:in-trial-or-fork-p (window-session window))
-        (or (ars-magna.cli:live-run-of-robot (shown-robot window))
+        (or (ars-magna.cli:live-run-of-robot (shown-robot-name window))
             (global-value '*simulation*)
             simulation)
         simulation)))
@@ -125,7 +125,7 @@ fork, it is the run outside, otherwise the run that WINDOW shows."
 message says whether the run continues, and how to open another window."
   (format nil "The window of ~A has closed: ~A~:[~;. The run continues; the ~
                line WINDOW opens another~]"
-          (shown-robot window)
+          (shown-robot-name window)
           (one-line (text-of-condition condition))
           (and (window-simulation window) (not (run-over-p window)))))
 
@@ -134,7 +134,7 @@ message says whether the run continues, and how to open another window."
   (when (remove-from-open-windows window)
     (let* ((simulation (run-to-notify window))
            (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
-      (warning-set (closing-message window condition) (clear-lost-prompt window)))))
+      (warning-set (closing-message window condition) (end-lines-of-lost-prompt window)))))
 
 ;;; Which robot a window shows.
 
@@ -156,14 +156,15 @@ message says whether the run continues, and how to open another window."
 
 (defun shown-in-other-window-p (window name simulation)
   (some (lambda (other) (window-shows-p other name simulation))
-        (remove window (open-windows))))
+        (remove window (open-window-list))))
 
 (defun robot-to-show (window)
   "The run of WINDOW is over. Return the name of the robot that WINDOW shall show next, and the run
 of that robot: the robot that a prompt would command or, if another window shows that robot, another
 robot of the same run. Return NIL if there is no such robot."
   (multiple-value-bind (simulation name)
-      (ars-magna.cli:run-after (window-simulation window) (watcher-robot (window-watcher window)))
+      (ars-magna.cli:run-to-continue-in (window-simulation window)
+                                        (watcher-robot (window-watcher window)))
     (when simulation
       (let ((names (mapcar #'robot-name (simulation-robots simulation))))
         (values (find-if-not (lambda (name) (shown-in-other-window-p window name simulation))
@@ -176,7 +177,7 @@ robot of the same run. Return NIL if there is no such robot."
     (unless (eq over (shiftf (window-known-over window) over))
       (write-in-window window "The run of ~A is over: ~A. This window shows its end. Start another ~
                                run with the line WORLD, or with SIMULATOR in Lisp.~%"
-                       (shown-robot window) reason))))
+                       (shown-robot-name window) reason))))
 
 (defun leave-finished-run (window reason)
   "Make WINDOW, whose run is over because of REASON, show another run. Close WINDOW if other windows
@@ -186,7 +187,7 @@ show all robots of that run."
            (show-robot-called window name simulation)
            (ars-magna.cli:announce-run (window-session window) simulation name))
           ;; There is a run to show, but other windows show all of its robots.
-          ((ars-magna.cli:run-after (window-simulation window) (shown-robot window))
+          ((ars-magna.cli:run-to-continue-in (window-simulation window) (shown-robot-name window))
            (warn-of-closing window (format nil "its run is over (~A)" reason))
            (close-window window))
           (t (report-run-over window reason)))))
@@ -208,19 +209,19 @@ has chosen another robot of the run, WINDOW shows that robot. Only the prompt's 
 
 ;;; When the X server goes, the thread that reads events, or a window's that paints, finds out.
 
-(defun windows-on (port)
+(defun windows-on-port (port)
   (with-lock (*windows-lock*)
     (remove port *windows* :key #'clim:port :test-not #'eq)))
 
 (defun close-lost-windows (port)
   "Close all windows on PORT, whose X server has gone, and report their closing."
   ;; None of them can answer for another.
-  (dolist (window (windows-on port)) (ars-magna.cli:abandon-session (window-session window)))
-  (dolist (window (windows-on port))
+  (dolist (window (windows-on-port port)) (ars-magna.cli:abandon-session (window-session window)))
+  (dolist (window (windows-on-port port))
     (warn-of-closing window "the X server has gone")
     (close-window window)))
 
-(defun run-window (window)
+(defun run-window-loop (window)
   "Run the event loop of WINDOW until the window is closed or an error ends it."
   (let* ((simulation (window-simulation window))
          (*message-queue* (simulation-messages simulation)))
@@ -267,12 +268,12 @@ has chosen another robot of the run, WINDOW shows that robot. Only the prompt's 
     (restore-settings window)
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)
-          (start-thread (lambda () (run-window window))
+          (start-thread (lambda () (run-window-loop window))
                         (format nil "display of ~A" (robot-name robot))))
     window))
 
 (defun window-of-this-thread ()
-  (find (current-thread) (open-windows)
+  (find (current-thread) (open-window-list)
         :key (lambda (window) (conversation-thread (window-conversation window)))))
 
 (defun switchable-windows ()
@@ -283,7 +284,7 @@ comes first. Other windows are left out while their prompts are in a trial or fo
             (remove-if (lambda (window)
                          (or (eq window own)
                              (ars-magna.cli:in-trial-or-fork-p (window-session window))))
-                       (open-windows)))))
+                       (open-window-list)))))
 
 (defun run-over-p (window)
   (let ((simulation (window-simulation window)))
@@ -292,7 +293,7 @@ comes first. Other windows are left out while their prompts are in a trial or fo
 (defun window-to-show-robot (robot)
   "Return the open window in which OPEN-WINDOW shows ROBOT, or NIL if a new window is needed."
   (let ((windows (switchable-windows)) (simulation (robot-simulation robot)))
-    (or (find (robot-name robot) windows :key #'shown-robot)
+    (or (find (robot-name robot) windows :key #'shown-robot-name)
         (and (not (live-p simulation))
              (find simulation windows :key #'window-simulation))
         (find-if #'run-over-p windows))))
@@ -311,19 +312,19 @@ of its trial or fork, one whose run is over, a new window. Signals MISUSE if the
     (cond ((null window) (open-new-window robot))
           (t (unless (window-shows-p window (robot-name robot) (robot-simulation robot))
                (switch-to-robot window robot))
-             (call-in-window #'show-in-front window)
+             (call-in-window #'raise-window window)
              window))))
 
-(defun await-windows ()
+(defun join-window-threads ()
   (loop for window = (first (with-lock (*windows-lock*) *windows*))
         while window
         do (join-thread (window-thread window))))
 
 (setf *display-opener* #'open-window
-      *displays-waiter* #'await-windows)
+      *displays-waiter* #'join-window-threads)
 
 (defun watch-rewound-run (old new)
-  (dolist (window (open-windows))
+  (dolist (window (open-window-list))
     (let ((watcher (window-watcher window)))
       (when (eq old (watcher-simulation watcher))
         (remove-observer (watcher-observer watcher) new)

@@ -9,7 +9,7 @@ are written with package prefixes. Manual B.")
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.rpl-robot
                 #:*trace-plans* #:plans
-                #:holding-p #:interface-p #:interface-runner #:interface-robot
+                #:holding-plans-p #:interface-p #:interface-runner #:interface-robot
                 #:interface-simulation)
   (:import-from :ars-magna.rpl
                 #:bar #:bar-serial #:bars #:image-of-tasks #:runner-change-mark #:runner-trace
@@ -22,8 +22,9 @@ are written with package prefixes. Manual B.")
                 #:task-runner #:failure-text #:*plan-end-hooks*)
   (:import-from :ars-magna.faces #:editor-server)
   (:import-from :ars-magna.rpl-pictures
-                #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-page #:make-timeline-page
-                #:page-scale #:tick-at)
+                #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-timeline-page
+                #:make-timeline-page
+                #:timeline-page-scale #:tick-at)
   (:import-from :ars-magna.cli
                 #:fundamental-character-output-stream
                 #:stream-line-column #:stream-write-char #:stream-write-string))

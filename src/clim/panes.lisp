@@ -124,7 +124,7 @@ would be cut off. Record in PANE what was painted where."
                      (paint-selection pane)
                      (paint-scroll-bar pane))
                    pane)
-    (paint-popup-over pane)
+    (repaint-popup-if-covered pane)
     (update-description pane)))
 
 (defun repaint-if-changed (pane)
@@ -296,7 +296,7 @@ Return NIL if SUBJECT cannot be selected.")
     (remove-duplicates (subjects-at (pane-subjects pane) x y)
                        :test #'same-subject-p :from-end t)))
 
-(defun selected-first (window subjects)
+(defun rotate-to-selected-subject (window subjects)
   "Return SUBJECTS, rotated so that the selected subject of WINDOW comes first if it is there."
   (let* ((key (window-selection window))
          (picked (and key (member key subjects :key #'subject-key :test #'equal))))

@@ -55,7 +55,7 @@ EQUAL if LOOK would show the same."
 ;;; Looking.
 
 ;; A plan that has broken, or is stepped, is busy and stands still: only its own thread can read it.
-(defun call-at-rest (interface function)
+(defun call-while-plans-rest (interface function)
   "Call FUNCTION while the plans of INTERFACE are at rest, or at once if this thread runs their
 reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to rest."
   (if (holding-p interface) (funcall function) (participant-at-rest interface function)))
@@ -65,8 +65,8 @@ reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to re
   (let* ((runner (interface-runner interface)) (trace (runner-trace runner)))
     (if (null trace)
         (setf (plan-look-page look) :untraced)
-        (let ((seen (call-at-rest interface
-                                  (lambda () (multiple-value-list (trace-so-far trace))))))
+        (let ((seen (call-while-plans-rest interface
+                                           (lambda () (multiple-value-list (trace-so-far trace))))))
           (unless (eq seen :busy)
             (destructuring-bind (entries count &rest more) seen
               (declare (ignore more))
@@ -79,11 +79,11 @@ reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to re
 
 (defun update-plan-tree (look interface)
   "Store the tree of the tasks of INTERFACE in LOOK. Return NIL if the plans are busy."
-  (let ((seen (call-at-rest interface
-                            (lambda ()
-                              (image-of-tasks (interface-runner interface)
-                                              :folded (plan-look-folded look)
-                                              :most +most-rows+)))))
+  (let ((seen (call-while-plans-rest interface
+                                     (lambda ()
+                                       (image-of-tasks (interface-runner interface)
+                                                       :folded (plan-look-folded look)
+                                                       :most +most-rows+)))))
     (unless (eq seen :busy)
       (setf (plan-look-tree look) seen)
       t)))

@@ -24,7 +24,7 @@
         (pane-offset pane) 0)
   (request-new-look pane))
 
-(defun fold-task (pane serial)
+(defun toggle-task-folding (pane serial)
   (let ((look (plan-look-of pane)))
     (setf (plan-look-folded look)
           (if (member serial (plan-look-folded look))
@@ -32,7 +32,7 @@
               (cons serial (plan-look-folded look))))
     (request-new-look pane)))
 
-(defun line-button (pane label line help &optional lit-p)
+(defun prompt-line-button (pane label line help &optional lit-p)
   (make-button label nil
                (lambda () (run-line-at-prompt (window-conversation (window-of pane)) line)) help
                lit-p))
@@ -45,11 +45,12 @@
                        "Show what the tasks of the plans do and wait for" (eq view :tree))
           (make-button "Timeline" nil (lambda () (set-plan-view pane :timeline))
                        "Show what the tasks have done, as bars over ticks" (eq view :timeline))
-          (line-button pane "Trace" (format nil "trace-plans ~:[on~;off~]" traced-p)
-                       (format nil "~:[Keep a trace of what plans do, for the timeline and for ~
+          (prompt-line-button pane "Trace" (format nil "trace-plans ~:[on~;off~]" traced-p)
+                              (format nil
+                                      "~:[Keep a trace of what plans do, for the timeline and for ~
                                     WHY~;A trace of plans is kept; click to discard the trace~]"
-                               traced-p)
-                       traced-p))))
+                                      traced-p)
+                              traced-p))))
 
 (defun draw-plan-button (canvas button x y)
   (let ((label (button-label button)))
@@ -92,8 +93,8 @@
                                  "No plan is running. The line PLAN name ... starts a plan.")))
           (draw-plan-ending canvas pane
                             (draw-plan-lines canvas y
-                                             (line-button pane "List the plans" "plan"
-                                                          "List plans that can be started")))))))
+                                             (prompt-line-button pane "List the plans" "plan"
+                                                                 "List plans that can be started")))))))
 
 ;;; Painting.
 
@@ -122,8 +123,9 @@
       (:untraced (draw-plan-lines canvas
                                   (draw-plan-text canvas pane +plan-buttons-height+
                                                   "There is no timeline without a trace.")
-                                  (line-button pane "Keep a trace from now on" "trace-plans on"
-                                               "Start to keep a trace of what plans do")))
+                                  (prompt-line-button pane "Keep a trace from now on"
+                                                      "trace-plans on"
+                                                      "Start to keep a trace of what plans do")))
       (:too-long (draw-plan-text canvas pane +plan-buttons-height+
                                  (format nil "The trace is too long to be drawn in the window. ~
                                               The line PLAN-TIMELINE plans.svg saves a picture.")))
@@ -192,10 +194,10 @@
   (declare (ignore window))
   (task-offers (bar-serial bar)))
 
-(defun rewind-line (tick) (format nil "rewind-to ~D" tick))
+(defun rewind-line-text (tick) (format nil "rewind-to ~D" tick))
 
 (defmethod offers ((moment plan-moment) window)
-  (cons (list "Rewind to this tick" (rewind-line (plan-moment-tick moment)))
+  (cons (list "Rewind to this tick" (rewind-line-text (plan-moment-tick moment)))
         (and (typep (plan-moment-bar moment) 'bar)
              (offers (plan-moment-bar moment) window))))
 
@@ -222,9 +224,9 @@ point of the timeline. Return NIL if PANE shows no subject there."
 
 (defmethod hover-text ((pane plan-pane) x y) (subject-description (plan-subject-at pane x y)))
 
-(defun rewind-pane-to-tick (pane tick)
+(defun rewind-run-to-tick (pane tick)
   (if (< tick (snapshot-tick (window-snapshot (window-of pane))))
-      (run-line-at-prompt (window-conversation (window-of pane)) (rewind-line tick))
+      (run-line-at-prompt (window-conversation (window-of pane)) (rewind-line-text tick))
       (show-hint (window-of pane) "The run is at this tick now.")))
 
 (defmethod handle-click ((pane plan-pane) button x y)
@@ -233,7 +235,7 @@ point of the timeline. Return NIL if PANE shows no subject there."
            (when (eq button :left)
              (etypecase subject
                (button (funcall (button-command subject)))
-               (fold-mark (fold-task pane (fold-mark-serial subject))))))
+               (fold-mark (toggle-task-folding pane (fold-mark-serial subject))))))
           ((eq button :right) (open-offers-at pane (and subject (list subject)) x y))
-          ((plan-moment-p subject) (rewind-pane-to-tick pane (plan-moment-tick subject)))
+          ((plan-moment-p subject) (rewind-run-to-tick pane (plan-moment-tick subject)))
           (t (select-and-describe (window-of pane) subject)))))

@@ -95,7 +95,8 @@ selected one of the subjects there, select the next subject."
 
 (defmethod handle-click ((pane display-pane) button x y)
   (if (eq button :right)
-      (open-offers-at pane (selected-first (window-of pane) (subjects-under pane x y)) x y)
+      (open-offers-at pane (rotate-to-selected-subject (window-of pane) (subjects-under pane x y)) x
+                      y)
       (select-next-at pane x y)))
 
 ;;; In the display of designators, the right button scrolls up and the left one down if they do not
@@ -137,7 +138,7 @@ popup. OPENER is the command or menu that had opened the popup.")
       (when (and pressed (not (eq opener (button-command pressed))))
         (route-press pane button x y)))))
 
-(defun handle-any-press (pane button x y)
+(defun handle-press-closing-popup (pane button x y)
   "Handle a press of the mouse BUTTON at X, Y of PANE. Close any open popup other than PANE."
   (focus-clicked-pane pane)
   (let ((opener (and (not (typep pane 'popup-pane)) (close-popup (window-of pane)))))
@@ -146,7 +147,7 @@ popup. OPENER is the command or menu that had opened the popup.")
         (route-press pane button x y))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-press-event))
-  (multiple-value-call #'handle-any-press pane (mouse-button-name event)
+  (multiple-value-call #'handle-press-closing-popup pane (mouse-button-name event)
                        (event-position pane event)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-release-event))

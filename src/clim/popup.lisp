@@ -63,7 +63,7 @@ or NIL if the row has no box to tick."
               do (draw-row canvas row y width (eq row (pane-pointed pane))))))
     (clim:draw-rectangle* pane 0 0 (1- width) (1- height) :filled nil :ink clim:+gray30+)))
 
-(defun paint-popup-over (pane)
+(defun repaint-popup-if-covered (pane)
   "Paint the popup again if it is open and the painting of PANE may have covered it."
   (unless (or (typep pane 'popup-pane)
               (clim:sheet-direct-mirror pane)
@@ -198,10 +198,10 @@ window has a title and the mouse shows what things are."
 
 ;;; Robots.
 
-(defun shown-robot (window)
+(defun shown-robot-name (window)
   (watcher-robot (window-watcher window)))
 
-(defun window-robots (window)
+(defun window-robot-names (window)
   (let ((snapshot (window-snapshot window)))
     (and snapshot (mapcar #'robot-image-name (snapshot-robots snapshot)))))
 
@@ -210,8 +210,8 @@ window has a title and the mouse shows what things are."
 the window shows the same robot."
   (flet ((robot-row (name)
            (make-row (format nil "~A" name)
-                     :tick (lambda () (same-name-p name (shown-robot window)))
+                     :tick (lambda () (same-name-p name (shown-robot-name window)))
                      :action (lambda ()
                                (run-line-at-prompt (window-conversation window)
                                                    (format nil "robot ~(~A~)" name))))))
-    (cons (make-row "Which robot?") (mapcar #'robot-row (window-robots window)))))
+    (cons (make-row "Which robot?") (mapcar #'robot-row (window-robot-names window)))))

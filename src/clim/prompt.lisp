@@ -54,7 +54,7 @@ line."))
 
 (defmethod ars-magna.cli:clear-screen ((console window-console) stream)
   (declare (ignore stream))
-  (empty-transcript (console-transcript console)))
+  (clear-transcript (console-transcript console)))
 
 ;;; A prompt at work.
 
@@ -67,7 +67,7 @@ line."))
   ;; Its thread was ended from elsewhere, not by its user.
   (lost-p nil :type boolean))
 
-(defun begin-conversation (transcript size place over)
+(defun make-window-conversation (transcript size place over)
   "Return a prompt that writes to TRANSCRIPT and starts in the package of this thread. SIZE is a
 function that returns the columns and rows of TRANSCRIPT. The function PLACE is called before each
 line, and OVER when the user leaves the prompt."
@@ -78,15 +78,15 @@ line, and OVER when the user leaves the prompt."
     (make-conversation (ars-magna.cli:make-session
                         :input (ars-magna.cli:make-window-input console) :output console
                         :color :always :place place
-                        :package (ars-magna.cli:package-of-caller))
+                        :package (ars-magna.cli:package-for-new-prompt))
                        console over)))
 
 (defun run-conversation (conversation simulation robot-name)
   "Read and run lines until the user leaves. Record in CONVERSATION if its thread ends otherwise."
   (let ((lost-p t))
     (unwind-protect
-         (progn (ars-magna.cli:run-session-apart (conversation-session conversation)
-                                                 simulation robot-name)
+         (progn (ars-magna.cli:run-additional-session (conversation-session conversation)
+                                                      simulation robot-name)
                 (setf lost-p nil))
       (setf (conversation-lost-p conversation) lost-p)
       (notify-window (conversation-console conversation))))
@@ -127,7 +127,7 @@ line, and OVER when the user leaves the prompt."
   "Return true if LINE cannot run because a break waits for an answer at the prompt and LINE is no
 answer. Print a message in this case."
   (when (and (ars-magna.cli:restart-choices-text (conversation-session conversation))
-             (not (ars-magna.cli:answers-any-break-p line)))
+             (not (ars-magna.cli:valid-at-any-break-p line)))
     (request-answer-first conversation (string-upcase (string-right-trim " " line)))
     t))
 

@@ -227,7 +227,7 @@ and TO, lists (number column)."
 
 (defmethod handle-drop ((pane transcript-pane) x y)
   (declare (ignore x y))
-  (when (selection-bounds pane) (share-text (clim:port pane) (selected-text pane) '(:primary))))
+  (when (selection-bounds pane) (offer-text (clim:port pane) (selected-text pane) '(:primary))))
 
 (defmethod handle-hover ((pane transcript-pane) x y)
   (declare (ignore x y)))

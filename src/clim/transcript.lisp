@@ -110,7 +110,7 @@ arguments, after each change."
            (transcript-count transcript) (length lines)
            (transcript-newest transcript) (1- (length lines))))))
 
-(defun empty-transcript (transcript)
+(defun clear-transcript (transcript)
   (call-changing-transcript
    transcript
    (lambda ()

@@ -11,7 +11,7 @@ the measured rate in ticks per second, or NIL if it is unknown."
   (rate nil :read-only t)
   (reached nil :type (or null real) :read-only t))
 
-(defstruct (sample (:copier nil))
+(defstruct (rate-sample (:copier nil))
   "What the last look at a run found. LAST-TICK is the tick, and CALLS the number of calls of user
 code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per second, or NIL."
   (last-tick 0 :type fixnum)
@@ -50,32 +50,32 @@ code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per seco
 (defun blocking-code-text (simulation sample)
   "Return a text about the user code that has blocked SIMULATION since the last look, or NIL."
   (multiple-value-bind (text calls) (users-code-in-progress simulation)
-    (and (eql calls (shiftf (sample-calls sample) calls))
-         (= (simulation-tick simulation) (sample-last-tick sample))
+    (and (eql calls (shiftf (rate-sample-calls sample) calls))
+         (= (simulation-tick simulation) (rate-sample-last-tick sample))
          text)))
 
 (defun chosen-rate (simulation)
   "Return the tick rate set for SIMULATION: ticks per second, :FREE, or NIL if it has no rate."
   (if (live-p simulation)
       (simulation-rate simulation)
-      (nth-value 1 (ars-magna.cli:simulation-pace simulation))))
+      (nth-value 1 (ars-magna.cli:trial-or-fork-pace simulation))))
 
 (defun paused-until-resume-p (simulation)
   "True if SIMULATION is paused, as a live run or as a trial, so that RESUME continues it."
   (if (live-p simulation)
       (paused-p simulation)
-      (eq :paused (ars-magna.cli:simulation-pace simulation))))
+      (eq :paused (ars-magna.cli:trial-or-fork-pace simulation))))
 
 (defun time-state (simulation sample)
   "Return two values: a keyword of STATE-WORDS, which says how time passes in SIMULATION; and a text
 to write after these words, or NIL."
   (let ((busy (blocking-code-text simulation sample)))
     (cond ((and (simulation-over simulation)
-                (not (eq :ended (ars-magna.cli:simulation-pace simulation))))
+                (not (eq :ended (ars-magna.cli:trial-or-fork-pace simulation))))
            :over)
           ;; In a trial or fork the prompt lets ticks pass.
           ((not (live-p simulation))
-           (or (ars-magna.cli:simulation-pace simulation)
+           (or (ars-magna.cli:trial-or-fork-pace simulation)
                (if (headless-p simulation) :still :stopped)))
           ((users-code-in-debugger-p simulation)
            (values :broken (ars-magna.cli:other-debugger-text simulation)))
@@ -88,29 +88,30 @@ to write after these words, or NIL."
 (defconstant +least-measured-ticks+ 10 "The least number of ticks for a measurement of the rate.")
 
 (defun begin-rate-measurement (sample tick seconds)
-  (setf (sample-tick sample) tick
-        (sample-seconds sample) seconds))
+  (setf (rate-sample-tick sample) tick
+        (rate-sample-seconds sample) seconds))
 
 (defun measure-rate (sample tick seconds)
   "Return the ticks per second measured at the present TICK and SECONDS, or NIL if unknown."
-  (let ((ticks (- tick (sample-tick sample))) (elapsed (- seconds (sample-seconds sample))))
+  (let ((ticks (- tick (rate-sample-tick sample)))
+        (elapsed (- seconds (rate-sample-seconds sample))))
     (when (or (minusp ticks)
               (and (> elapsed 0.9) (or (>= ticks +least-measured-ticks+) (> elapsed 5))))
       ;; Rounded to useful digits.
-      (setf (sample-reached sample)
+      (setf (rate-sample-reached sample)
             (unless (minusp ticks)
               (let ((rate (/ ticks elapsed)))
                 (if (< rate 20) (/ (round rate 1/10) 10) (round rate)))))
       (begin-rate-measurement sample tick seconds))
-    (sample-reached sample)))
+    (rate-sample-reached sample)))
 
 (defun measure-progress (simulation sample)
   "Return a PROGRESS object for SIMULATION. Update SAMPLE, which has the results of the last look."
   (multiple-value-bind (state more) (time-state simulation sample)
     (let ((tick (simulation-tick simulation)) (seconds (seconds-now)))
-      (setf (sample-last-tick sample) tick)
+      (setf (rate-sample-last-tick sample) tick)
       (unless (eq state :running)
-        (setf (sample-reached sample) nil)
+        (setf (rate-sample-reached sample) nil)
         (begin-rate-measurement sample tick seconds))
       (make-progress :state state :more more
                      :rate (chosen-rate simulation)
@@ -156,7 +157,7 @@ quick. The function GONE is called with the reason when the watched run has been
   (unpaced-p nil :type boolean)
   ;; How time goes, and how it was found to go so far.
   (progress (make-progress) :type progress)
-  (sample (make-sample) :type sample)
+  (sample (make-rate-sample) :type rate-sample)
   ;; What is known of the plans.
   (plans (make-plan-look) :type plan-look :read-only t)
   ;; What GRAPHICS-SCALE* was when that was looked at last.
@@ -184,7 +185,7 @@ quick. The function GONE is called with the reason when the watched run has been
   "Record that the last snapshot of WATCHER was painted, so that the next may be made."
   (signal-semaphore (watcher-painted watcher)))
 
-(defun fetch-snapshot (watcher)
+(defun make-snapshot-if-wanted (watcher)
   "Make a snapshot between two ticks if WATCHER still wants one. If a program passes the ticks
 itself, do nothing, because the next tick makes the snapshot."
   (let ((simulation (watcher-simulation watcher)))
@@ -194,11 +195,11 @@ itself, do nothing, because the next tick makes the snapshot."
 
 ;;; The pacer.
 
-(defun fetch-snapshot-if-changed (watcher)
+(defun make-snapshot-if-changed (watcher)
   (let ((simulation (watcher-simulation watcher)))
     (when (and simulation (/= (watcher-traces watcher) (count-of-changes simulation)))
       (setf (watcher-wanted-p watcher) t)
-      (fetch-snapshot watcher))))
+      (make-snapshot-if-wanted watcher))))
 
 ;; A run that is being started again is over for a moment.
 (defun check-run-over (watcher)
@@ -233,7 +234,7 @@ itself, do nothing, because the next tick makes the snapshot."
   (check-plans watcher)
   (check-progress watcher)
   (check-graphics-scale watcher)
-  (fetch-snapshot-if-changed watcher)
+  (make-snapshot-if-changed watcher)
   (check-run-over watcher))
 
 (defun run-pacer (watcher)
@@ -244,7 +245,7 @@ itself, do nothing, because the next tick makes the snapshot."
              (wait-on-semaphore (watcher-over watcher) +seconds-after-picture+)
              (check-plans watcher)
              (setf (watcher-wanted-p watcher) t)
-             (when (watcher-stale-p watcher) (fetch-snapshot watcher)))
+             (when (watcher-stale-p watcher) (make-snapshot-if-wanted watcher)))
            (when (<= next (seconds-now))
              (setf next (+ (seconds-now) +seconds-between-checks+))
              (check-for-changes watcher))))
@@ -266,8 +267,8 @@ itself, do nothing, because the next tick makes the snapshot."
                                          (if (watcher-wanted-p watcher)
                                              (publish-snapshot watcher simulation)
                                              (setf (watcher-stale-p watcher) t)))
-            (watcher-sample watcher) (make-sample :last-tick tick :tick tick
-                                                  :seconds (seconds-now))
+            (watcher-sample watcher) (make-rate-sample :last-tick tick :tick tick
+                                                       :seconds (seconds-now))
             (watcher-simulation watcher) simulation)
       (stop-observing old observer)
       (set-look-simulation (watcher-plans watcher) simulation)

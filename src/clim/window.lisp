@@ -86,10 +86,10 @@ frames, and :layers, :color-p and :usual-magnification."
                        :watcher watcher options)))
     (setf (window-transcript window) (make-transcript (lambda () (request-refresh window)))
           (window-conversation window)
-          (begin-conversation (window-transcript window)
-                              (lambda () (values-list (window-text-size window)))
-                              (lambda () (match-window-and-prompt window))
-                              (lambda () (close-window window))))
+          (make-window-conversation (window-transcript window)
+                                    (lambda () (values-list (window-text-size window)))
+                                    (lambda () (match-window-and-prompt window))
+                                    (lambda () (close-window window))))
     (push (watcher-robot watcher) (window-robots-shown window))
     (write-in-window window "Type a command below and press Return, or choose a command from a ~
                              menu. HELP lists all commands.~%")
@@ -100,7 +100,7 @@ frames, and :layers, :color-p and :usual-magnification."
 
 (defun window-robot (window)
   (let ((snapshot (window-snapshot window)))
-    (and snapshot (snapshot-robot snapshot (shown-robot window)))))
+    (and snapshot (snapshot-robot snapshot (shown-robot-name window)))))
 
 (defun shown-robot-p (window image)
   "True if IMAGE, from any snapshot, is an image of the robot whose details WINDOW shows."
@@ -149,7 +149,7 @@ frames, and :layers, :color-p and :usual-magnification."
   "Paint all panes of WINDOW whose contents have changed, as one picture."
   (let ((snapshot (window-snapshot window)))
     (restart-prompt-if-lost (window-conversation window) (window-simulation window)
-                            (shown-robot window))
+                            (shown-robot-name window))
     (restart-pacer-if-lost (window-watcher window))
     (restart-event-thread (clim:port window))
     (if (shiftf (window-erased-p window) nil)

@@ -38,7 +38,7 @@
 
 ;;; Dragging.
 
-(defun at-middle-p (pane image x y)
+(defun at-robot-middle-p (pane image x y)
   (multiple-value-bind (to-x to-y) (map-point-at pane x y)
     (let ((reach (/ (with-canvas ((make-instance 'canvas) :scale (pane-scale pane))
                       (robot-radius))
@@ -51,7 +51,7 @@
 the window shows comes first."
   (let ((robots (remove-if-not (lambda (subject)
                                  (and (typep subject 'robot-image)
-                                      (at-middle-p pane subject x y)))
+                                      (at-robot-middle-p pane subject x y)))
                                subjects)))
     (stable-sort robots (lambda (one other) (and one (not other)))
                  :key (lambda (image) (shown-robot-p (window-of pane) image)))))
@@ -77,11 +77,11 @@ Y, return the selected one, else a robot with its middle there, else the smalles
     (when (or moved-p (moved-far-p x y from-x from-y))
       (cond ((draggable-now-p pane subject)
              (setf (pane-drag pane) (list subject from-x from-y t))
-             (show-ghost pane subject x y))
+             (show-drop-place pane subject x y))
             (t (setf (pane-drag pane) (list nil x y t))
                (move-view pane (- from-x x) (- from-y y)))))))
 
-(defun show-ghost (pane subject x y)
+(defun show-drop-place (pane subject x y)
   "Mark in PANE the place X, Y where SUBJECT would be dropped, and describe the place in the strip."
   (multiple-value-bind (to-x to-y) (map-point-at pane x y)
     (setf (pane-ghost pane) (list x y))
@@ -92,18 +92,18 @@ Y, return the selected one, else a robot with its middle there, else the smalles
                    (format nil "~A: this place is not on the map" (subject-title subject))))
     (repaint-if-changed pane)))
 
-(defun paint-ghost (pane)
+(defun paint-drop-place (pane)
   (when (pane-ghost pane)
     (destructuring-bind (x y) (pane-ghost pane)
       (let ((radius (max 5 (* 1/2 (pane-scale pane)))))
         (clim:draw-circle* pane x y radius :filled nil :ink clim:+dark-orange+
                                            :line-thickness 2)))))
 
-(defgeneric line-that-moves (subject x y window)
+(defgeneric subject-moving-line (subject x y window)
   (:documentation "Return the prompt line of WINDOW that moves SUBJECT to X, Y, which are texts.")
   (:method ((image thing-image) x y window)
     (declare (ignore window))
-    (format nil "(move-thing ~A ~A ~A)" (find-thing-form image) x y))
+    (format nil "(move-thing ~A ~A ~A)" (find-thing-form-text image) x y))
   (:method ((image robot-image) x y window)
     (if (shown-robot-p window image)
         (format nil "pos ~A ~A" x y)
@@ -116,8 +116,8 @@ Y, return the selected one, else a robot with its middle there, else the smalles
     (if (cell-at pane x y)
         (multiple-value-bind (x y) (map-point-at pane x y)
           (run-line-at-prompt (window-conversation window)
-                              (line-that-moves subject (coordinate-text x) (coordinate-text y)
-                                               window))
+                              (subject-moving-line subject (coordinate-text x) (coordinate-text y)
+                                                   window))
           (show-hint window ""))
         (show-hint window "This place is not on the map."))
     (repaint-if-changed pane)))

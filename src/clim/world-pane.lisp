@@ -26,14 +26,14 @@
 
 (defun view-map (pane) (window-map (window-of pane)))
 
-(defun pane-edges (pane)
+(defun pane-margins (pane)
   "Return the left, top and bottom margins of PANE, with coordinates and scale bar, as pixels."
   (view-edges (view-map pane) (window-layers (window-of pane))))
 
 (defun view-box (pane)
   "Return the box (left top right bottom) of the map in PANE, without coordinates and scale bar."
   (multiple-value-bind (width height) (pane-size pane)
-    (destructuring-bind (left top bottom) (pane-edges pane)
+    (destructuring-bind (left top bottom) (pane-margins pane)
       (list left top (max left width) (max top (- height bottom))))))
 
 (defun in-view-p (pane x y)
@@ -115,7 +115,7 @@
         (set-view-corner pane (+ (pane-left pane) (- x (/ (+ left right) 2)))
                          (+ (pane-top pane) (- y (/ (+ top bottom) 2))))))))
 
-(defun off-centre-p (pane)
+(defun robot-off-centre-p (pane)
   "True if the window's robot is outside the middle half of PANE."
   (multiple-value-bind (x y) (robot-position-in-pane pane)
     (destructuring-bind (left top right bottom) (view-box pane)
@@ -141,11 +141,11 @@
 (defun prepare-view (pane)
   "Fit or move the view of PANE as the user has chosen, before PANE is painted."
   (multiple-value-bind (width height) (pane-size pane)
-    (let ((key (list width height (view-map pane) (pane-edges pane))))
+    (let ((key (list width height (view-map pane) (pane-margins pane))))
       (apply-user-scale pane)
       (cond ((pane-fitting-p pane)
              (unless (equal key (pane-fitted pane)) (fit-view pane)))
-            ((and (pane-following-p pane) (off-centre-p pane))
+            ((and (pane-following-p pane) (robot-off-centre-p pane))
              (centre-robot pane)))
       (setf (pane-fitted pane) key))))
 
@@ -240,7 +240,7 @@
                                                     (pane-left pane) (pane-top pane)
                                                     width height))
                                pane pane)))
-          (paint-ghost pane))))))
+          (paint-drop-place pane))))))
 
 (defun mark-cell (pane x y)
   (let* ((scale (pane-scale pane))

@@ -81,7 +81,7 @@ PORT if the connection is lost."
                                                     type-error))
                                  (drop-event port)
                                  ;; The event may have requested painting.
-                                 (mapc #'request-repaint (windows-on port))
+                                 (mapc #'request-repaint (windows-on-port port))
                                  (return-from call-dropping-bad-event t))
                                 (t (close-lost-port port))))))
     (funcall function)))
@@ -96,7 +96,7 @@ PORT if the connection is lost."
   "Record that the thread which reads the events of PORT ends, and refresh the windows on PORT."
   (with-lock (*windows-lock*)
     (when (member port *ports*) (pushnew port *unread-ports*)))
-  (mapc #'request-refresh (windows-on port)))
+  (mapc #'request-refresh (windows-on-port port)))
 
 (defun restart-event-thread (port)
   "Start a new thread that reads the events of PORT, if the old thread has ended."
@@ -119,7 +119,7 @@ PORT if the connection is lost."
   "Errors in a program, not in its connection to the X server."
   '(or type-error cell-error program-error control-error arithmetic-error))
 
-(defun clx-fails-p ()
+(defun clx-read-fails-p ()
   "True if CLX fails to read an answer of the X server that is longer than 32 bytes. The test asks
 which keys are down: this answer has 40 bytes."
   (handler-case (let ((display (xlib:open-default-display)))
@@ -130,7 +130,7 @@ which keys are down: this answer has 40 bytes."
     (error () nil)))
 
 (defun library-fault-message (condition clx-fails-p)
-  "Return the message on CONDITION, an error of CLX if CLX-FAILS-P is true, else of McCLIM."
+  "Return the message on CONDITION, an error of CLX if CLX-READ-FAILS-P is true, else of McCLIM."
   (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
           (ars-magna.clx:library-text (if clx-fails-p "CLX" "McCLIM"))
           (lisp-implementation-version)
@@ -141,7 +141,7 @@ which keys are down: this answer has 40 bytes."
 (defun connection-failure-message (condition)
   "Return the message about CONDITION, an error in opening the connection to the X server."
   (typecase condition
-    (program-fault (library-fault-message condition (clx-fails-p)))
+    (program-fault (library-fault-message condition (clx-read-fails-p)))
     (xlib:connection-failure
      (format nil "No display: the X server ~A (DISPLAY) refuses the connection (~A). Allow it with ~
                   xauth or xhost." (environment-value "DISPLAY") (one-line-text condition)))

@@ -79,7 +79,7 @@ arrived, and the obstacle that blocked it: :WALL, :THING or NIL."
     ((camera "the camera")
      (designator "the designator that it tracked"))
     ((:family :moving) (:section "3.5") (:delay robot-move-delay*) (:echo camera designator)
-     (:errors (:not-tracking (format-text "~*~A is not tracking anything"))
+     (:errors (:not-tracking (operation-formatter "~*~A is not tracking anything"))
               (:goto-local "The designator is local: the robot is there already")
               (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))

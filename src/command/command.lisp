@@ -115,7 +115,7 @@ refused if NEEDS is false."
   "Return STEP, an argument of GO-ON. Signals an error if code of the simulator passes a STEP that
 DEFINE-STEP has not defined."
   (cond ((get step 'step) step)
-        (*marking-p* (error "~S is not defined by DEFINE-STEP" step))
+        (*loading-simulator-p* (error "~S is not defined by DEFINE-STEP" step))
         (t (register-step step :guarded))))
 
 (defun step-p (name)

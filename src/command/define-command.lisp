@@ -21,7 +21,7 @@ STORAGE-BIN- becomes BIN- (manual E; the rule is inferred; reading 194)."
   (let ((entry (assoc key options)))
     (if entry (rest entry) default)))
 
-(defun describe-command (sentence resource parameters results errors section)
+(defun command-documentation-text (sentence resource parameters results errors section)
   "Return the documentation of the function that issues a command."
   (format nil "~A Returns nothing; takes effect in the next tick.~%~@[Arguments: ~{~A~^; ~}.~%~]~
                The continuation gets an error code or NIL, the ~(~A~)~{, ~A~}.~%~
@@ -84,7 +84,7 @@ arguments and could itself be the continuation. False if the value is known to b
        (users-symbol-p (first form))
        (fboundp (first form))
        (not (macro-function (first form)))
-       (callable-with-p (first form) count)
+       (callable-with-count-p (first form) count)
        (not (find 'function (ensure-list (third (ensure-list (sb-introspect:function-type
                                                               (first form)))))))))
 
@@ -102,7 +102,7 @@ arguments and could itself be the continuation. False if the value is known to b
 (defun check-command-form (name resource parameters results options)
   (flet ((check (test clause expected)
            (unless test
-             (reject-clause (title "define-command" name) clause expected))))
+             (reject-clause (definition-title "define-command" name) clause expected))))
     (check (and name (symbolp name) (not (keywordp name))) name "a symbol as the command's name")
     (check (and (proper-list-p resource) (= 2 (length resource))) resource "(variable type)")
     (dolist (parameter parameters)
@@ -129,7 +129,7 @@ arguments and could itself be the continuation. False if the value is known to b
 (defun check-types-known (name types)
   (dolist (type types)
     (unless (find-argument-type type nil)
-      (reject-clause (title "define-command" name) type
+      (reject-clause (definition-title "define-command" name) type
                      "the name of an argument type that DEFINE-ARGUMENT-TYPE has defined"))))
 
 (defmacro define-command (name (operation resource &rest parameters) (&rest results)
@@ -194,13 +194,13 @@ BODY runs in a tick. OPERATION must end with SUCCEED or FAIL-WITH, now or later 
                     `(lambda (,operation ,@(first report))
                        (declare (ignorable ,operation ,@(first report)))
                        ,@(rest report)))
-         :guarded-p (not *marking-p*)
+         :guarded-p (not *loading-simulator-p*)
          :body (lambda (,operation ,(first resource) ,@variables)
                  (declare (ignorable ,operation ,(first resource)))
                  ,@body)))
        (defun ,name (,(first resource) ,@variables &optional continuation)
-         ,(describe-command sentence resource parameters results errors
-                            (first (option-arguments :section options)))
+         ,(command-documentation-text sentence resource parameters results errors
+                                      (first (option-arguments :section options)))
          ,(argument-check-form name (first resource) (second resource))
          ,@(loop for (variable type) in parameters
                  collect (argument-check-form name variable type))

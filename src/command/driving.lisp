@@ -25,7 +25,7 @@ Return the value of DRIVE-TICK."
     ;; A computed limit is allocated, so there is one in the last tick only.
     (cond ((< (abs left) quantum)
            (drive-tick robot (* left (the double-float (robot-speed-now robot)))))
-          ((minusp left) (drive-tick robot (- +endless+)))
+          ((minusp left) (drive-tick robot (- +infinite-distance+)))
           (t (drive-tick robot)))))
 
 (defun drive-remaining-distance (operation)

@@ -36,7 +36,7 @@ number of the next tick, because a tick is counted after its requests are perfor
     (setf (robot-failure (resource-robot (operation-resource operation)))
           (make-failure (if interruption (interruption-tick interruption) tick)
                         (operation-asked operation) (request-name operation)
-                        (named-resource operation) (operation-arguments operation)
+                        (resource-for-users operation) (operation-arguments operation)
                         (request-asker operation) code text
                         (and interruption
                              (list (interruption-by interruption)
@@ -48,21 +48,21 @@ number of the next tick, because a tick is counted after its requests are perfor
 (defmethod request-name ((operation operation))
   (command-name (operation-command operation)))
 
-(defun mind-of (resource)
+(defun robot-mind-or-nil (resource)
   (and (robot-p resource) (robot-mind resource)))
 
-(defun occupant (resource)
+(defun current-request (resource)
   "Return the request that RESOURCE, a robot or part, carries out, or NIL. A track counts only if
 the camera carries out nothing else."
   (let ((event (resource-event resource))
         (track (and (camera-p resource) (camera-tracking resource))))
     (cond ((typep event 'request) event)
           (track (track-operation track))
-          ((mind-of resource) (occupant (mind-of resource))))))
+          ((robot-mind-or-nil resource) (current-request (robot-mind-or-nil resource))))))
 
-(defun newest-interruption (resource)
+(defun newest-interruption-record (resource)
   "Return the last interruption of a command of RESOURCE or, for a robot, of its mind; or NIL."
-  (first (stable-sort (loop for each in (list resource (mind-of resource))
+  (first (stable-sort (loop for each in (list resource (robot-mind-or-nil resource))
                             when (and each (resource-interruption each)) collect it)
                       #'> :key #'interruption-tick)))
 
@@ -78,9 +78,9 @@ continuation of robot-turn\" or \"Lisp (main thread)\". A camera that only track
 CAMERA-TRACK, and a robot that only thinks executes THINK. Return NIL if RESOURCE executes no
 command. A newer command always interrupts an older command."
   (check-resource 'under-way resource)
-  (let ((occupant (occupant resource)))
+  (let ((occupant (current-request resource)))
     (when occupant
-      (values (request-name occupant) (note-text (request-asker occupant))))))
+      (values (request-name occupant) (asker-note-text (request-asker occupant))))))
 
 (addition last-interruption)
 (defun last-interruption (resource)
@@ -89,12 +89,12 @@ by-what by-asker tick): the names of the interrupted and the interrupting comman
 string that says who issued it, and the tick. THINK counts as a command of the robot. Return NIL if
 no command was interrupted."
   (check-resource 'last-interruption resource)
-  (let ((interruption (newest-interruption resource)))
+  (let ((interruption (newest-interruption-record resource)))
     (when interruption
       (list (interruption-what interruption)
-            (note-text (interruption-asker interruption))
+            (asker-note-text (interruption-asker interruption))
             (interruption-by interruption)
-            (note-text (interruption-by-asker interruption))
+            (asker-note-text (interruption-by-asker interruption))
             (interruption-tick interruption)))))
 
 (defun under-way-text (resource)
@@ -141,10 +141,10 @@ Return NIL if no command has failed. See WHY."
     (when failure
       (destructuring-bind (&optional by by-asker) (failure-interrupter failure)
         (list :command (failure-command failure) :call (call-text failure)
-              :for (note-text (failure-asker failure))
+              :for (asker-note-text (failure-asker failure))
               :asked (failure-asked failure) :tick (failure-tick failure)
               :error (failure-code failure) :text (failure-text failure)
-              :by by :by-for (and by (note-text by-asker)))))))
+              :by by :by-for (and by (asker-note-text by-asker)))))))
 
 (defun failure-sentences (resource)
   "Return a list of sentences about the LAST-FAILURE of RESOURCE: what was issued and when, the

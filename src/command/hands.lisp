@@ -98,13 +98,13 @@ no thing, drop only DESIGNATOR, with PROBABILITY."
     ((designator "the designator"))
     ((:family :handling) (:section "3.6") (:prompt "HAND-GRASP") (:prefix "hand-grasp")
      (:delay (+ hand-move-delay* hand-grasp-delay*))
-     (:errors (:hand-grasping (format-text "~A is already holding something"))
-              (:different-location (format-text "~A not in same location as ~A"))
+     (:errors (:hand-grasping (operation-formatter "~A is already holding something"))
+              (:different-location (operation-formatter "~A not in same location as ~A"))
               (:bad-designator "Designator is not valid")
               (:non-local-grasp "Designator is not local")
-              (:not-tracked (format-text "~*~A is not tracking ~A"))
-              (:missed-grasp (format-text "~A missed"))
-              (:insufficient-strength (format-text "~A is not strong enough")))
+              (:not-tracked (operation-formatter "~*~A is not tracking ~A"))
+              (:missed-grasp (operation-formatter "~A missed"))
+              (:insufficient-strength (operation-formatter "~A is not strong enough")))
      (:report (designator)
               (format nil "~A grasped ~A" (operation-resource operation)
                       (hand-holding (operation-resource operation)))))
@@ -122,7 +122,7 @@ the thing, which silently makes designators of the thing invalid."
 (define-command hand-ungrasp (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6")
-     (:errors (:not-grasping (format-text "~A is not holding anything"))))
+     (:errors (:not-grasping (operation-formatter "~A is not holding anything"))))
     "Drop what HAND holds: into the container the hand is in, or where the robot stands."
   (let ((thing (hand-holding hand)))
     (cond (thing (set-down hand thing)
@@ -131,7 +131,7 @@ the thing, which silently makes designators of the thing invalid."
 
 ;;; Feeling.
 
-(defun end-with-answer (operation code)
+(defun end-without-failure (operation code)
   "End OPERATION with the error code CODE, which is an answer and does not count as a failure."
   (queue-operation-message operation (error-text operation code))
   (setf (operation-finished-p operation) t)
@@ -141,10 +141,10 @@ the thing, which silently makes designators of the thing invalid."
 (define-command hand-grasp-check (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:traits :asks)
-     (:errors (:grasping (format-text "~A is holding something"))
-              (:not-grasping (format-text "~A is not holding anything"))))
+     (:errors (:grasping (operation-formatter "~A is holding something"))
+              (:not-grasping (operation-formatter "~A is not holding anything"))))
     "Feel whether HAND holds something. The answer is the error code :GRASPING or :NOT-GRASPING."
-  (end-with-answer operation (if (hand-holding hand) :grasping :not-grasping)))
+  (end-without-failure operation (if (hand-holding hand) :grasping :not-grasping)))
 
 (defconstant +watch-period+ 1000
   "The number of ticks after which the event that watches a grip is queued again.")
@@ -162,8 +162,8 @@ the thing, which silently makes designators of the thing invalid."
 (define-command hand-track (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:delay 1)
-     (:errors (:grasp-lost (format-text "~A lost its grip"))
-              (:not-grasping (format-text "~A is not holding anything"))))
+     (:errors (:grasp-lost (operation-formatter "~A lost its grip"))
+              (:not-grasping (operation-formatter "~A is not holding anything"))))
     "Watch the grip of HAND until the hand loses it, or until another command to HAND interrupts."
   (setf (operation-subject operation) (hand-holding hand))
   (if (hand-holding hand)

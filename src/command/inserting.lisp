@@ -9,7 +9,7 @@
   (format nil "~A inserted into ~A" (operation-resource operation)
           (destination-name destination)))
 
-(defun insertion-error-text (control)
+(defun insertion-error-formatter (control)
   "Return a function of an operation that formats CONTROL with the part and the destination's name."
   (lambda (operation)
     (format nil control (operation-resource operation)
@@ -48,13 +48,13 @@
     ((destination "the designator or bin"))
     ((:family :handling) (:section "3.6") (:prompt "HAND-INSERT-DESIG")
      (:delay hand-move-delay*)
-     (:errors (:bin-closed (insertion-error-text "~*~A is closed"))
-              (:insufficient-capacity (insertion-error-text "No room for ~A in ~A"))
-              (:holding-thing (insertion-error-text "~A is holding ~A"))
-              (:hand-bump (insertion-error-text "~A bumped ~A"))
+     (:errors (:bin-closed (insertion-error-formatter "~*~A is closed"))
+              (:insufficient-capacity (insertion-error-formatter "No room for ~A in ~A"))
+              (:holding-thing (insertion-error-formatter "~A is holding ~A"))
+              (:hand-bump (insertion-error-formatter "~A bumped ~A"))
               (:bad-designator "Designator is not valid")
               (:non-local-designator "Designator is not local")
-              (:different-location (insertion-error-text "~A not in same location as ~A")))
+              (:different-location (insertion-error-formatter "~A not in same location as ~A")))
      (:report (destination) (insertion-message operation destination)))
     "Insert HAND, with what it holds, into a container."
   (cond ((storage-bin-p destination) (insert-hand operation hand destination))
@@ -68,11 +68,11 @@
                                  (storage-bin storage-bin "a storage bin of the same robot"))
     ((storage-bin "the storage bin"))
     ((:family :handling) (:section "3.6") (:prefix "hand-insert") (:delay hand-move-delay*)
-     (:errors (:bin-closed (insertion-error-text "~*~A is closed"))
-              (:insufficient-capacity (insertion-error-text "No room for ~A in ~A"))
-              (:holding-thing (insertion-error-text "~A is holding ~A"))
-              (:hand-bump (insertion-error-text "~A bumped ~A"))
-              (:different-location (insertion-error-text "~A not in same location as ~A")))
+     (:errors (:bin-closed (insertion-error-formatter "~*~A is closed"))
+              (:insufficient-capacity (insertion-error-formatter "No room for ~A in ~A"))
+              (:holding-thing (insertion-error-formatter "~A is holding ~A"))
+              (:hand-bump (insertion-error-formatter "~A bumped ~A"))
+              (:different-location (insertion-error-formatter "~A not in same location as ~A")))
      (:report (storage-bin) (insertion-message operation storage-bin)))
     "Insert HAND, with what it holds, into a storage bin."
   (insert-hand operation hand storage-bin))
@@ -83,7 +83,7 @@
   "Take PART one level out of its container and end OPERATION (reading 160)."
   (let ((location (part-location part)))
     (cond (location
-           (move-part part (outer-enclosure part))
+           (move-part part (location-after-removal part))
            (succeed-with-message
             operation (format nil "~A removed from ~A" part (location-name location))))
           (t (fail-with operation :not-inside)))))
@@ -91,14 +91,14 @@
 (define-command hand-remove (operation (hand hand))
     ()
     ((:family :handling) (:section "3.6") (:delay hand-move-delay*)
-     (:errors (:not-inside (format-text "~A is not inside anything"))))
+     (:errors (:not-inside (operation-formatter "~A is not inside anything"))))
     "Take HAND, with what it holds, one level out of its container."
   (take-part-out operation hand))
 
 (define-command camera-remove (operation (camera camera))
     ()
     ((:family :handling) (:section "3.4.3") (:delay camera-move-delay*)
-     (:errors (:not-inside (format-text "~A is not inside anything"))))
+     (:errors (:not-inside (operation-formatter "~A is not inside anything"))))
     "Take CAMERA out of its innermost container. The camera loses its track."
   (take-part-out operation camera))
 
@@ -131,13 +131,13 @@
     ((destination "the designator or bin"))
     ((:family :handling) (:section "3.4.3") (:prompt "CAM-INSERT-DESIG")
      (:delay camera-move-delay*)
-     (:errors (:bin-closed (insertion-error-text "~*~A is closed"))
-              (:not-tracking (format-text "~A is not tracking anything"))
-              (:not-tracking-destination (format-text "~A is not tracking ~A"))
-              (:camera-bump (insertion-error-text "~A bumped ~A"))
-              (:insufficient-capacity (insertion-error-text "No room for ~A in ~A"))
+     (:errors (:bin-closed (insertion-error-formatter "~*~A is closed"))
+              (:not-tracking (operation-formatter "~A is not tracking anything"))
+              (:not-tracking-destination (operation-formatter "~A is not tracking ~A"))
+              (:camera-bump (insertion-error-formatter "~A bumped ~A"))
+              (:insufficient-capacity (insertion-error-formatter "No room for ~A in ~A"))
               (:non-local-designator "Designator is not local")
-              (:local-not-local (insertion-error-text "~A not in same location as ~A")))
+              (:local-not-local (insertion-error-formatter "~A not in same location as ~A")))
      (:report (destination) (insertion-message operation destination)))
     "Insert CAMERA into a container, to look inside. The camera loses its track."
   (let ((code (try-camera-insertion camera destination (destination-container destination))))
@@ -153,7 +153,7 @@
 (define-command storage-bin-open (operation (storage-bin storage-bin))
     ()
     ((:family :handling) (:section "3.6") (:delay bin-delay*)
-     (:errors (:bin-open (format-text "~A is already open"))))
+     (:errors (:bin-open (operation-formatter "~A is already open"))))
     "Open STORAGE-BIN."
   (cond ((storage-bin-closed-p storage-bin)
          (setf (storage-bin-closed-p storage-bin) nil)
@@ -165,11 +165,11 @@
     ((jammed-part "the camera or hand that keeps the bin from closing, or NIL"))
     ((:family :handling) (:section "3.6") (:delay bin-delay*)
      (:expected :bin-closed :bin-jammed)
-     (:errors (:bin-closed (format-text "~A is already closed"))
+     (:errors (:bin-closed (operation-formatter "~A is already closed"))
               (:robot-in-bin (lambda (operation)
                                (let ((bin (operation-resource operation)))
                                  (format nil "~A still in ~A" (part-in-bin bin) bin))))
-              (:bin-jammed (format-text "~A is jammed"))))
+              (:bin-jammed (operation-formatter "~A is jammed"))))
     "Close STORAGE-BIN, so that kickers cannot move things out of the bin."
   (cond ((storage-bin-closed-p storage-bin) (fail-with operation :bin-closed))
         ((part-in-bin storage-bin)

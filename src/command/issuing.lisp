@@ -3,7 +3,7 @@
 (in-package :ars-magna.command)
 
 (export '(issue *caller-passes-ticks-p* between-runs-p *recorded-bindings* parameters-bound
-          warn-of-recorded-bindings requested-elsewhere-p))
+          warn-of-recorded-bindings requested-by-other-run-p))
 
 ;;; Arguments from another run.
 
@@ -47,7 +47,7 @@ position. TOLD lists the names of the arguments."
   (let ((*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
-               (or (not (callable-with-p continuation (length told)))
+               (or (not (callable-with-count-p continuation (length told)))
                    (misplaced-parameter-p continuation told)))
       (warn-once (list :continuation (command-name command)) world
                  (format nil "~(~A~): the continuation takes ~(~:A~), and is called with ~(~A~). ~
@@ -58,15 +58,15 @@ position. TOLD lists the names of the arguments."
 
 ;;; One simulation inside another.
 
-(defun elsewhere-request-key (world)
+(defun other-run-request-key (world)
   "Return the key for requests to WORLD from a simulation of another world in this tick."
   (list :asked-elsewhere (world-tick world)))
 
-(defun requested-elsewhere-p (world)
+(defun requested-by-other-run-p (world)
   "True if a program simulating another world issued a request to WORLD since WORLD's last tick."
-  (warning-given-p (elsewhere-request-key world) world))
+  (warning-given-p (other-run-request-key world) world))
 
-(defun record-elsewhere-request (world)
+(defun record-other-run-request (world)
   "If a program in a simulation of another world issues a request to an idle WORLD, record this."
   (let ((timeline (world-timeline world)))
     (when (and *simulation*
@@ -74,7 +74,7 @@ position. TOLD lists the names of the arguments."
                (not (eq timeline (timeline-of *simulation*)))
                (not (live-p timeline))
                (not (timeline-passing-p timeline)))
-      (first-time-p (elsewhere-request-key world) world))))
+      (first-warning-for-key-p (other-run-request-key world) world))))
 
 ;;; Two commands without a tick between them.
 
@@ -125,7 +125,7 @@ program has just issued without a continuation: in this tick or, in a live run, 
       (when (and before
                  (not (may-replace-p command resource arguments before))
                  (null (operation-continuation before))
-                 (equal (note-of-asker) (request-asker before)))
+                 (equal (current-asker-note) (request-asker before)))
         (warn-of-interrupting (operation-command before) command resource)))))
 
 (defun warn-of-interrupting (before command resource)
@@ -153,7 +153,7 @@ over."
                (not (operation-finished-p before))
                (null (operation-continuation before))
                (equal arguments (operation-arguments before))
-               (equal (note-of-asker) (request-asker before)))
+               (equal (current-asker-note) (request-asker before)))
       (warn-of-repeating command (- (timeline-tick timeline) (operation-asked before)) resource))))
 
 (defun warn-of-repeating (command ticks resource)
@@ -179,7 +179,7 @@ over."
   (loop for spec in (command-parameters command)
         for argument in arguments
         do (case (spec-type spec)
-             (angle (warn-of-angle (command-name command) world argument))
+             (angle (warn-of-angle-in-degrees (command-name command) world argument))
              (ticks (when (minusp argument)
                       (warn-once (list :ticks (command-name command)) world
                                  (format nil "~(~A~): ~A ticks do nothing.~@[ To drive back, turn ~
@@ -307,7 +307,7 @@ if the robot's run is over, or if an argument belongs to another run."
           timeline)
     (warn-of-arguments command world arguments)
     (record-bindings command world)
-    (record-elsewhere-request world)
+    (record-other-run-request world)
     (warn-of-other-owners command robot arguments)
     (warn-of-continuation command world continuation)
     (warn-if-postponed command resource robot)

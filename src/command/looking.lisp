@@ -90,10 +90,10 @@ that the attributes can have; a range begins with its lower end"
     ((:family :looking) (:section "3.4.3") (:prompt "PLACE-DESIG") (:prefix "get-designator")
      (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
-              (:invalid-place-type (format-text "~*~A is not a place type"))
-              (:invisible-place-type (format-text "~*~A cannot be recognized at a distance"))
-              (:camera-enclosed (format-text "~A is inside a container"))
-              (:designator-not-found (format-text "~A found no ~A")))
+              (:invalid-place-type (operation-formatter "~*~A is not a place type"))
+              (:invisible-place-type (operation-formatter "~*~A cannot be recognized at a distance"))
+              (:camera-enclosed (operation-formatter "~A is inside a container"))
+              (:designator-not-found (operation-formatter "~A found no ~A")))
      (:report (designator) (found-message operation (list designator))))
     "Look with CAMERA for a place of a type. Of several places, one is chosen at random. The error
 code :DESIGNATOR-NOT-FOUND means that the camera found no place; this is no failure."
@@ -106,10 +106,10 @@ code :DESIGNATOR-NOT-FOUND means that the camera found no place; this is no fail
     ((:family :looking) (:section "3.4.3") (:prompt "ALL-PLACE-DESIGS")
      (:prefix "get-all-designators") (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
-              (:invalid-place-type (format-text "~*~A is not a place type"))
-              (:invisible-place-type (format-text "~*~A cannot be recognized at a distance"))
-              (:camera-enclosed (format-text "~A is inside a container"))
-              (:designator-not-found (format-text "~A found no ~A")))
+              (:invalid-place-type (operation-formatter "~*~A is not a place type"))
+              (:invisible-place-type (operation-formatter "~*~A cannot be recognized at a distance"))
+              (:camera-enclosed (operation-formatter "~A is inside a container"))
+              (:designator-not-found (operation-formatter "~A found no ~A")))
      (:report (designators) (found-message operation designators)))
     "Look with CAMERA for all places of a type. Each place after the first takes a tick more. The
 error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
@@ -137,7 +137,7 @@ error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
     ((:family :looking) (:section "3.4.3") (:prompt "OBJ-DESIG") (:prefix "get-designator")
      (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
-              (:designator-not-found (format-text "~A found no such object")))
+              (:designator-not-found (operation-formatter "~A found no such object")))
      (:report (designator) (found-message operation (list designator))))
     "Look with CAMERA for an object that fits a description. Of several objects, one is chosen at
 random. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object; this is no
@@ -152,7 +152,7 @@ failure."
     ((:family :looking) (:section "3.4.3") (:prompt "ALL-OBJ-DESIGS")
      (:prefix "get-all-designators") (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
-              (:designator-not-found (format-text "~A found no such object")))
+              (:designator-not-found (operation-formatter "~A found no such object")))
      (:report (designators) (found-message operation designators)))
     "Look with CAMERA for all objects that fit a description. Each object after the first takes a
 tick more. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object."
@@ -179,7 +179,7 @@ the same container or in the open (reading 140)."
        (designator-truly-local-p designator)))
 
 ;; Warnings have been queued already, unless it was interrupted.
-(defmethod track-ended ((operation operation) code designator)
+(defmethod notify-track-end ((operation operation) code designator)
   (setf (operation-finished-p operation) t)
   (if (eq code :interrupt)
       (report operation code '())
@@ -206,9 +206,9 @@ the same container or in the open (reading 140)."
     ((:family :looking) (:section "3.4.3") (:delay camera-desig-delay*) (:echo designator)
      (:traits :begins)
      (:errors (:already-tracking #'already-tracking-text)
-              (:local-not-local (format-text "~*~A is not local any more"))
-              (:camera-inside (format-text "~A is inside a container and cannot track ~A"))
-              (:lost-track (format-text "~A lost track of ~A")))
+              (:local-not-local (operation-formatter "~*~A is not local any more"))
+              (:camera-inside (operation-formatter "~A is inside a container and cannot track ~A"))
+              (:lost-track (operation-formatter "~A lost track of ~A")))
      (:report (designator)
               (format nil "~A tracking ~A" (operation-resource operation) designator)))
     "Turn CAMERA to what DESIGNATOR denotes and keep CAMERA pointed there. The continuation is
@@ -222,7 +222,7 @@ called with NIL when the track begins, and with an error code when the track end
 (define-command camera-untrack (operation (camera camera))
     ()
     ((:family :looking) (:section "3.4.3") (:traits :stops) (:expected :not-tracking)
-     (:errors (:not-tracking (format-text "~A is not tracking anything")))
+     (:errors (:not-tracking (operation-formatter "~A is not tracking anything")))
      (:report () (format nil "~A stopped tracking" (operation-resource operation))))
     "Stop CAMERA from tracking. The designator remains; the track's continuation gets :INTERRUPT."
   (cond ((camera-tracking camera)

@@ -2,12 +2,12 @@
 
 (in-package :ars-magna.command)
 
-(export '(manipulation-command-p command-of-manipulation))
+(export '(manipulation-command-p ensure-manipulation-command))
 
 ;;; Objects are given as designators. An invalid, false or non-local one, or one of another robot,
 ;;; designates nothing.
 
-(defun designated-thing (designator resource)
+(defun designated-local-thing (designator resource)
   "Return the local thing that DESIGNATOR denotes for the robot of RESOURCE, or NIL (reading 175)."
   (and (own-designator-p resource designator)
        (eq (designator-type designator) :local)
@@ -51,7 +51,7 @@ designator that denotes no local thing."
   (loop with resource = (method-resource method arguments)
         for nil in (parameter-list-objects (method-parameters method))
         for designator in arguments
-        collect (designated-thing designator resource)))
+        collect (designated-local-thing designator resource)))
 
 (defun method-applies-p (method arguments)
   (let ((things (method-things method arguments)))
@@ -69,7 +69,7 @@ designated things now, or NIL."
 
 ;;; In its tick.
 
-(defun warn-of-returned-code (operation code)
+(defun warn-of-returned-value (operation code)
   "Warn once for the manipulation of OPERATION if CODE, which its body returned, is no error code."
   (unless (typep code '(or null keyword))
     (let ((name (command-prefix (operation-command operation))) (text (unqualified-text code)))
@@ -90,7 +90,7 @@ with :FAILED if the body fails."
                                        (apply (method-body method)
                                               (append things (nthcdr (length things) arguments))))))
                       (list "manipulation " (command-prefix (operation-command operation))))
-      (progn (warn-of-returned-code operation (first results))
+      (progn (warn-of-returned-value operation (first results))
              (finish operation (first results) (second results))))))
 
 (define-step carry-out (operation (and (manipulation-method-p (operation-subject operation))
@@ -126,10 +126,10 @@ no method, as after UNDEFINE."
           (operation-resource operation)
           (and value (one-line (safe-text value :escape nil :length 100)))))
 
-(defun designated-things (operation)
+(defun designated-local-things (operation)
   "Return a list of the things designated in OPERATION; NIL if a designator denotes no local thing."
   (let ((things (loop for designator in (designator-arguments operation)
-                      collect (designated-thing designator (operation-resource operation)))))
+                      collect (designated-local-thing designator (operation-resource operation)))))
     (and (notany #'null things) things)))
 
 (defun manipulation-failure-text (operation)
@@ -140,12 +140,12 @@ no method, as after UNDEFINE."
                attributes~]"
           (command-prefix (operation-command operation))
           (find :local (designator-arguments operation) :key #'designator-type :test-not #'eq)
-          (and (null (operation-subject operation)) (designated-things operation))))
+          (and (null (operation-subject operation)) (designated-local-things operation))))
 
 (define-record (manipulation-command (:include command) (:constructor %make-manipulation-command))
   "The command by which a manipulation is carried out.")
 
-(defmethod command-entry ((command manipulation-command) operation)
+(defmethod command-journal-entry ((command manipulation-command) operation)
   (list* 'manipulate (command-name command) (operation-arguments operation)))
 
 (defun make-manipulation-command (name)
@@ -162,7 +162,7 @@ no method, as after UNDEFINE."
      :report #'manipulation-report-text
      :body #'begin-manipulation)))
 
-(defun command-of-manipulation (manipulation)
+(defun ensure-manipulation-command (manipulation)
   "Return the command by which MANIPULATION is carried out. Make the command if there is none yet."
   (or (manipulation-command manipulation)
       (setf (manipulation-command manipulation)
@@ -180,7 +180,7 @@ codes of the manipulation. Signals UNKNOWN-NAME, and WRONG-ARGUMENT when no meth
          (continuation (first (last arguments)))
          (arguments (butlast arguments))
          (resource (method-resource (first (methods-for manipulation arguments)) arguments))
-         (command (command-of-manipulation manipulation)))
+         (command (ensure-manipulation-command manipulation)))
     (check-argument-type name 'continuation continuation 'continuation)
     (warn-of-continuation command (robot-world (resource-robot resource)) continuation '(err value))
     (issue command resource arguments (and continuation

@@ -120,7 +120,7 @@ and a list of lists (variable type) for its other parameters. The type is NIL wh
          (not (part-in-file-p (source-file source) (list 'defmanipulation name)
                               (method-form method))))))
 
-(defun retyped-method-p (old method)
+(defun edited-method-p (old method)
   "True if OLD and METHOD were typed, not read from files, and METHOD looks like an edited OLD."
   (let ((parameters (method-parameters old)) (others (method-parameters method)))
     (and (null (method-source old)) (null (method-source method))
@@ -134,7 +134,7 @@ and a list of lists (variable type) for its other parameters. The type is NIL wh
   (let* ((current (remove-if (lambda (old) (outdated-method-p name old (method-source method)))
                              methods))
          (old (or (find (method-form method) current :key #'method-form :test #'value-equal)
-                  (find-if (lambda (old) (retyped-method-p old method)) current))))
+                  (find-if (lambda (old) (edited-method-p old method)) current))))
     (cons method (remove old current))))
 
 (defun warn-if-in-other-files (name methods method)
@@ -150,7 +150,7 @@ and a list of lists (variable type) for its other parameters. The type is NIL wh
 (defun define-manipulation (name form body &key (success 1) (delay 0))
   "Define a method of the manipulation NAME, as DEFMANIPULATION does. FORM is the method's parameter
 list, BODY a function of these parameters. Return NAME."
-  (let* ((definition (title "defmanipulation" name))
+  (let* ((definition (definition-title "defmanipulation" name))
          (manipulation (or (find-manipulation name nil) (make-manipulation name)))
          (method (make-manipulation-method
                   :form form :source (current-source) :digest (current-form-digest)
@@ -201,7 +201,7 @@ default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a val
 methods that fit, the newest is used. A method replaces an older method with the same parameter
 list. Loading a changed file again removes the methods that it no longer contains. Signals
 MALFORMED-DEFINITION. Return NAME."
-  (let ((definition (title "defmanipulation" name)))
+  (let ((definition (definition-title "defmanipulation" name)))
     (expand-definition form environment
                        (lambda ()
                          (manipulation-forms definition name parameters options body)))))

@@ -61,7 +61,7 @@ the command that it has interrupted, or NIL"))
 (defun operation-agenda (operation)
   (timeline-agenda (the timeline (operation-timeline operation))))
 
-(defun named-resource (operation)
+(defun resource-for-users (operation)
   "Return the resource of OPERATION as programs and journals name it: the robot, not its mind."
   (let ((resource (operation-resource operation)))
     (if (mind-p resource) (mind-robot resource) resource)))
@@ -73,14 +73,14 @@ the command that it has interrupted, or NIL"))
   (list :operation (name-string (command-name (operation-command operation)))
         (event-time operation)))
 
-(defgeneric command-entry (command operation)
+(defgeneric command-journal-entry (command operation)
   (:documentation "Return the journal entry of OPERATION, which carries out COMMAND.")
   (:method ((command command) operation)
-    (list* (command-name command) (named-resource operation)
+    (list* (command-name command) (resource-for-users operation)
            (operation-arguments operation))))
 
 (defmethod request-entry ((operation operation))
-  (command-entry (operation-command operation) operation))
+  (command-journal-entry (operation-command operation) operation))
 
 ;;; Ending.
 
@@ -93,7 +93,7 @@ the command that it has interrupted, or NIL"))
       (string text)
       (function (funcall text operation)))))
 
-(defun format-text (control)
+(defun operation-formatter (control)
   "Return a function that formats CONTROL with the resource and arguments of an operation."
   (lambda (operation)
     (apply #'format nil control (operation-resource operation) (operation-arguments operation))))
@@ -131,10 +131,10 @@ the command that it has interrupted, or NIL"))
 (defun call-continuation (operation code results)
   (when (operation-continuation operation)
     (when (operation-forked-p operation)
-      (count-moment (operation-timeline operation)))
+      (record-code-moment (operation-timeline operation)))
     (apply #'call-user-code (operation-continuation operation)
            (command-origin (operation-command operation))
-           code (named-resource operation) results)))
+           code (resource-for-users operation) results)))
 
 (defun notify (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
@@ -218,12 +218,12 @@ queue a message and end OPERATION with :FAILED."
 (declaim (inline repeat-step))
 (defun repeat-step (operation)
   "Call the step of OPERATION again in the next tick. Only the step itself calls REPEAT-STEP."
-  (queue-again (operation-agenda operation) operation 1))
+  (requeue-event (operation-agenda operation) operation 1))
 
 (defun go-on (operation step &optional (delay 1))
   "Continue OPERATION with STEP, the name of a function of an operation, DELAY ticks from now."
   (setf (operation-step operation) step)
-  (queue-again (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
+  (requeue-event (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
 
 (defun go-on-now (operation step)
   "Continue OPERATION with STEP, the name of a function of an operation, in this tick and later."
@@ -234,7 +234,7 @@ queue a message and end OPERATION with :FAILED."
 (define-step start-body (operation t)
   "Run the body of OPERATION's command."
   (apply (command-body (operation-command operation))
-         operation (named-resource operation) (operation-arguments operation)))
+         operation (resource-for-users operation) (operation-arguments operation)))
 
 (defun free-resource (operation agenda rival)
   "Free the resource of OPERATION, on which the event RIVAL is pending. Interrupt RIVAL, or execute

@@ -17,7 +17,7 @@
       (reject-clause definition clause
                      (format nil "one of ~(~A~)~@[; did you mean ~(~A~)?~]"
                              (attribute-domain attribute)
-                             (value-like value (attribute-domain attribute)))))))
+                             (similar-domain-value value (attribute-domain attribute)))))))
 
 (defun check-clause (definition clause)
   (let* ((key (attribute-key (first clause))) (attribute (declared-attribute key))
@@ -31,7 +31,7 @@
           ((discrete-p attribute)
            (check-discrete-clause definition clause attribute))
           ((eq :substance key))
-          ((not (or (matchvar-p value) (quantity-p value) (null value) (range-p value)))
+          ((not (or (matchvar-p value) (bounded-number-p value) (null value) (range-p value)))
            (reject-clause definition clause "a number, or a range: two numbers in a list")))))
 
 (defun parse-pattern (definition specification)

@@ -16,7 +16,7 @@
         (and (= (length arguments) (length (command-parameters command)))
              (every (lambda (spec argument) (argument-of-type-p argument (spec-type spec)))
                     (cons (command-resource command) (command-parameters command))
-                    (cons (named-resource operation) arguments))))))
+                    (cons (resource-for-users operation) arguments))))))
 
 (defun check-operation (operation)
   (must-hold (and (command-p (request-operator operation))
@@ -27,7 +27,7 @@
              "a command in progress is invalid")
   (let ((name (command-name (operation-command operation))))
     (must-hold (eq (operation-resource operation)
-                   (occupied-resource (operation-command operation) (named-resource operation)))
+                   (occupied-resource (operation-command operation) (resource-for-users operation)))
                "~(~A~) does not occupy its resource" name)
     (must-hold (arguments-fit-p operation) "~(~A~) does not have the arguments that it needs" name)
     (when (operation-step operation)
@@ -36,7 +36,7 @@
       (must-hold (step-fits-p operation)
                  "~(~A~) would continue with a step that does not fit it" name))
     (must-hold (eq (operation-timeline operation)
-                   (timeline-of (named-resource operation)))
+                   (timeline-of (resource-for-users operation)))
                "~(~A~) is in progress in another run" name)))
 
 (defmethod check-request ((operation operation))

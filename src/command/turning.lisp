@@ -12,7 +12,7 @@ range, else NIL (reading 91)."
         ((> value high) (values (double high) :high))
         (t (values (double value) nil))))
 
-(defun limit-error-text (control parameter)
+(defun limit-error-formatter (control parameter)
   "Return a function of an operation that formats the text CONTROL with the value of PARAMETER."
   (lambda (operation)
     (declare (ignore operation))
@@ -25,7 +25,7 @@ range, else NIL (reading 91)."
     ((:family :moving) (:section "3.5")
      (:errors (:negative-speed "Speed cannot be negative. Set to 0")
               (:too-high-speed
-               (limit-error-text "Speed too high. Set to the maximum, ~,2F" 'max-speed*)))
+               (limit-error-formatter "Speed too high. Set to the maximum, ~,2F" 'max-speed*)))
      (:report (speed) (phrase "Speed set to ~,2F" speed)))
     "Set the speed at which ROBOT drives, limited to the range from 0 to MAX-SPEED*."
   (multiple-value-bind (speed outside) (limit-value speed 0 max-speed*)
@@ -39,9 +39,11 @@ range, else NIL (reading 91)."
     ((turn-angle "the turn angle set"))
     ((:family :moving) (:section "3.5")
      (:errors (:too-low-turn-angle
-               (limit-error-text "Turn angle too low. Set to the minimum, ~,2F" 'min-turn-angle*))
+               (limit-error-formatter "Turn angle too low. Set to the minimum, ~,2F"
+                                      'min-turn-angle*))
               (:too-high-turn-angle
-               (limit-error-text "Turn angle too high. Set to the maximum, ~,2F" 'max-turn-angle*)))
+               (limit-error-formatter "Turn angle too high. Set to the maximum, ~,2F"
+                                      'max-turn-angle*)))
      (:report (angle) (format nil "Turn angle set to ~,2F" angle)))
     "Set how far ROBOT turns in a tick, limited to the range from MIN-TURN-ANGLE* to
 MAX-TURN-ANGLE*."

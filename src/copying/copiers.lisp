@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.copying)
 
-(export '(copier with-copier copier-variable copier-option record-copy record-finished-copy
+(export '(copier with-copier copied-run-value copier-option record-copy record-finished-copy
           define-shared define-shared-slots))
 
 (define-record (copier (:constructor make-copier ()))
@@ -26,7 +26,7 @@ for the copy and true, or NIL and false" :writable)
   "Return the value of the option KEY of COPIER, or NIL."
   (getf (copier-options copier) key))
 
-(defun copier-variable (copier symbol)
+(defun copied-run-value (copier symbol)
   "Return the value to which the run that COPIER copies has bound SYMBOL."
   (cdr (assoc symbol (copier-environment copier) :test #'eq)))
 
@@ -58,7 +58,8 @@ for the copy and true, or NIL and false" :writable)
 (defvar *idle-copiers* (list '())
   "A list of one element, the list of the copiers that are not in use.")
 
-(defconstant +largest-idle+ 20000 "The largest number of objects that a copier may have copied if it
+(defconstant +reusable-copier-limit+ 20000
+  "The largest number of objects that a copier may have copied if it
 is to be reused.")
 
 (defun take-copier ()
@@ -69,7 +70,7 @@ is to be reused.")
         finally (return (make-copier))))
 
 (defun put-copier-back (copier)
-  (when (<= (hash-table-count (copier-table copier)) +largest-idle+)
+  (when (<= (hash-table-count (copier-table copier)) +reusable-copier-limit+)
     (clrhash (copier-table copier))
     (fill (copier-work copier) 0)
     (setf (copier-holder copier) nil
@@ -125,13 +126,13 @@ fork has NIL in its place) and MAKE-NO-FORK."))
     (or (and place-of (funcall place-of value))
         (and (copier-holder copier) (safe-text (copier-holder copier) :length 200)))))
 
-(defun find-decision (value copier)
+(defun find-chosen-replacement (value copier)
   "If COPIER's caller has chosen a replacement for VALUE, return (VALUE . replacement); else NIL."
   (assoc value (copier-option copier :decisions) :test #'eq))
 
-(defun copy-by-decision (value copier)
+(defun chosen-replacement (value copier)
   "Return the replacement for VALUE chosen by the caller of COPIER. Signals CANNOT-FORK if none."
-  (let ((decision (find-decision value copier)))
+  (let ((decision (find-chosen-replacement value copier)))
     (if decision
         (cdr decision)
         (error 'cannot-fork :value value :place (value-location-text value copier)))))
@@ -144,7 +145,7 @@ structures and instances are copied with their contents. If two of them share an
 copies share the copy of that object. Functions are shared; closures are copied with the variables
 that they close over. To change this, define a method for a class of your own: return VALUE itself
 to share it, or a replacement. (forked x fork) returns the counterpart of another object x.")
-  (:method (value fork) (copy-by-decision value fork)))
+  (:method (value fork) (chosen-replacement value fork)))
 
 (addition copy-plan-value)
 
@@ -173,7 +174,7 @@ to share it, or a replacement. (forked x fork) returns the counterpart of anothe
   (let ((slot (and kind (find name (kind-slots kind) :key #'kind-slot-name :test #'eq))))
     (if slot
         (kind-slot-shared-p slot)
-        (or (and (environment-p object) (fixed-slot-p name))
+        (or (and (environment-p object) (interpreter-only-slot-p name))
             (loop for (type . slots) in *shared-slots*
                     thereis (and (typep object type) (member name slots)))))))
 
@@ -232,7 +233,7 @@ cache is a vector of pairs (layout . copy-policy), indexed by the number of the 
   (declare #.*hot*)
   (let* ((policies (cdr *copy-policies*))
          (layout (layout-of object))
-         (place (logand (layout-number layout) (1- +policies-cached+)))
+         (place (logand (layout-hash layout) (1- +policies-cached+)))
          (known (svref policies place)))
     (if (eq layout (car known))
         (cdr known)

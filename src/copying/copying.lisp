@@ -26,10 +26,10 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
   (declare #.*hot* (type copier copier))
   (multiple-value-bind (copy known-p) (gethash value (copier-table copier))
     (cond (known-p copy)
-          ((copier-screen copier) (copy-unless-screened value copier))
+          ((copier-screen copier) (replace-or-copy value copier))
           (t (begin-copy value copier)))))
 
-(defun copy-unless-screened (value copier)
+(defun replace-or-copy (value copier)
   "Return the replacement for VALUE that the screen, a function in COPIER, gives, or a copy."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
@@ -90,11 +90,11 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
 (defun copy-by-method (value copier)
   "Return the replacement for VALUE that the caller has chosen, or else the value of
 COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
-  (let ((decision (find-decision value copier)))
+  (let ((decision (find-chosen-replacement value copier)))
     (flet ((blame (condition)
              (unless (typep condition 'ars-magna-error)
                (error 'cannot-fork :value value :place (value-location-text value copier)
-                                   :trouble (brief-text condition)))))
+                                   :trouble (brief-condition-text condition)))))
       (declare (dynamic-extent #'blame))
       (if decision
           (cdr decision)
@@ -115,7 +115,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
                             (:copy (copy-slots value copier copy-policy))
                             (:share value)
                             (:method (record-copy value (copy-by-method value copier) copier))
-                            (:ask (copy-by-decision value copier)))))
+                            (:ask (chosen-replacement value copier)))))
       (function (if (closure-p value) (note (copy-closure value)) (copy-function value copier)))
       (simple-vector (if (zerop (length value)) value (note (copy-seq value))))
       (array (cond ((array-displacement value) (copy-displaced value copier))
@@ -129,7 +129,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
 (defun copy-function (function copier)
   "Return the copy of FUNCTION, not a closure: FUNCTION itself, unless its class is a user's."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
-        ((typep function 'standard-object) (copy-by-decision function copier))
+        ((typep function 'standard-object) (chosen-replacement function copier))
         (t function)))
 
 ;;; Replacing references in copies.
@@ -207,7 +207,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
 
 ;;; Plain values, outside of any run.
 
-(defun plain-value-p (value)
+(defun copied-by-default-p (value)
   "True if VALUE is a list, array, table, closure or closed-over variable, or if its class is a
 user's without a method of COPY-PLAN-VALUE."
   (typecase value
@@ -225,7 +225,7 @@ INSTEAD-OF, called with the object."
   (if (every (lambda (value) (typep value '(or number symbol character))) list)
       list
       (with-copier (copier :screen (lambda (value)
-                                     (if (plain-value-p value)
+                                     (if (copied-by-default-p value)
                                          (values nil nil)
                                          (values (funcall instead-of value) t))))
         (copying (copier) (forked list copier)))))

@@ -2,9 +2,10 @@
 
 (in-package :ars-magna.copying)
 
-(export '(reference digest-state holds-p closed-over fields-of-type saved-slot-p blank-object
+(export '(reference digest-state contains-object-p closed-over-values fields-of-type saved-slot-p
+                    blank-object
           note-savable-function savable-function-name find-savable-function contradiction
-          contradict must-hold proper-list-of-p))
+          signal-contradiction must-hold proper-list-of-p))
 
 ;;; An object is digested with its state and parts; other objects it refers to, by their REFERENCE.
 
@@ -22,7 +23,7 @@ parts. Return DIGEST. A kind may add an :AFTER method.")
     (digest-add digest object))
   (:method ((object structure-object) digest)
     (let ((kind (kind-of object)))
-      (digest-identity object digest)
+      (digest-add-identity object digest)
       (when kind
         (dolist (slot (kind-decisive-slots kind))
           (digest-slot slot (slot-content slot object) digest))))
@@ -39,7 +40,7 @@ parts. Return DIGEST. A kind may add an :AFTER method.")
 
 (defvar *digest-depth* 0 "The nesting depth of the object that is being digested.")
 
-(defmethod digest-identity (object digest)
+(defmethod digest-add-identity (object digest)
   (let ((reference (reference object)))
     (if reference
         (digest-add digest reference)
@@ -92,7 +93,7 @@ parts. Return DIGEST. A kind may add an :AFTER method.")
                            when (slot-boundp object slot) collect (slot-value object slot)))
     (t (if (value-cell-p object) (list (cell-value object)) '()))))
 
-(defun holds-p (object value)
+(defun contains-object-p (object value)
   "True if VALUE is OBJECT, or is contained in OBJECT at any depth: in lists, arrays, tables,
 closures, structures or instances."
   (let ((seen (make-hash-table :test 'eq)) (work (list object)))
@@ -103,7 +104,7 @@ closures, structures or instances."
                  (setf (gethash each seen) t
                        work (append (contents-of each) work)))))))
 
-(defun closed-over (function)
+(defun closed-over-values (function)
   "Return a list of the values that FUNCTION closes over; NIL if FUNCTION is not a closure."
   (when (closure-p function)
     (loop for value in (closure-values function)
@@ -121,7 +122,7 @@ closures, structures or instances."
   "True if saved runs contain SLOT, an element of FIELDS-OF-TYPE."
   (and (member (kind-slot-role slot) '(:fixed :state :memory)) t))
 
-(defun describe-plain-slot (name type)
+(defun plain-slot-description (name type)
   "Return a description of NAME, a slot with values of TYPE in a structure without a kind."
   (make-kind-slot name :fixed type "" nil nil
                   (constantly nil)
@@ -138,7 +139,7 @@ closures, structures or instances."
     (append slots
             (loop for (name slot-type) in (class-slot-types (find-class type))
                   unless (find name slots :key #'kind-slot-name)
-                    collect (describe-plain-slot name slot-type)))))
+                    collect (plain-slot-description name slot-type)))))
 
 (defun blank-object (type fields)
   "Return a new structure of TYPE, a symbol. The caller must then set its FIELDS, descriptions of
@@ -177,13 +178,13 @@ type; so do not print the object."
   (:report (lambda (condition stream) (write-string (contradiction-text condition) stream)))
   (:documentation "Objects loaded from a file are inconsistent."))
 
-(defun contradict (control &rest arguments)
+(defun signal-contradiction (control &rest arguments)
   "Signal a CONTRADICTION with a text formatted from CONTROL and ARGUMENTS."
   (error 'contradiction :text (apply #'format nil control arguments)))
 
 (defmacro must-hold (test control &rest arguments)
   "Signal a CONTRADICTION with a text formatted from CONTROL and ARGUMENTS unless TEST is true."
-  `(unless ,test (contradict ,control ,@arguments)))
+  `(unless ,test (signal-contradiction ,control ,@arguments)))
 
 (defun proper-list-of-p (predicate object)
   "True if OBJECT is a proper list and PREDICATE is true for each of its elements."

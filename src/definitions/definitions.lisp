@@ -3,7 +3,8 @@
 (in-package :ars-magna.definitions)
 
 (export '(current-source *definition* reread-definition make-defining reject-clause
-          call-with-definition expand-definition forms-or-rejection title check-function-name
+          call-with-definition expand-definition forms-or-rejection definition-title
+          check-function-name
           replacing-form-p definition-in-file-p undefined-name-of ask-for-form clause-location
           current-form-digest endless-p has-quote-p))
 
@@ -42,14 +43,14 @@ string after the name; or NIL."
          (text (or (second (member :documentation parts)) (find-if #'stringp parts))))
     (and (stringp text) text)))
 
-(defun title (operator name)
+(defun definition-title (operator name)
   "Return the text by which messages name OPERATOR's definition of NAME, such as \"defmap yard\"."
   (let ((name (abridged name)))
     (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
 
 (defun definition-text (definition)
   (let ((form (defining-form definition)))
-    (title (first form) (second form))))
+    (definition-title (first form) (second form))))
 
 (defun clause-location (clause)
   "Return the file and line of CLAUSE, a part of the current definition, as a text such as
@@ -61,7 +62,8 @@ string after the name; or NIL."
                                (and *definition* (defining-form *definition*)) clause)
         (when *definition* (setf (defining-ordinal *definition*) ordinal))
         (format nil "~A~@[, line ~D~]" (source-file source)
-                (or (line-in-text (source-file source) clause (location-in-text clause)) line))))))
+                (or (form-line-in-file (source-file source) clause (location-in-text clause))
+                    line))))))
 
 (defun reject-clause (definition clause expected &optional (place (clause-location clause)))
   "Signal MALFORMED-DEFINITION about CLAUSE. DEFINITION is a string such as \"defmap watson\". PLACE
@@ -199,7 +201,7 @@ that has another clause. The new form has these restarts, too."
   "True if a part of FORM is quoted. Where nothing is evaluated, that is a mistake."
   (and (find-part (lambda (part) (typep part '(cons (eql quote)))) form) t))
 
-(defun rejected-form (condition)
+(defun rejection-form (condition)
   "Return a form whose evaluation signals CONDITION, a MALFORMED-DEFINITION, again."
   (when *compile-file-truename*
     (call-at-source-location (malformed-definition-clause condition)
@@ -215,7 +217,7 @@ MALFORMED-DEFINITION, and the form is NESTED in another form or is in a file tha
 return a list with a form that signals the error later. (The compiler would change an error now.)"
   (if (or nested *compile-file-truename*)
       (handler-case (funcall function)
-        (malformed-definition (condition) (list (rejected-form condition))))
+        (malformed-definition (condition) (list (rejection-form condition))))
       (funcall function)))
 
 (defun call-with-definition (form function)

@@ -196,10 +196,10 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
                (push (first slot) known)))))
 
 (defun reject-clause-of-kind (name clause expected)
-  (error 'malformed-definition :definition (title "define-kind" name)
+  (error 'malformed-definition :definition (definition-title "define-kind" name)
                                :clause clause :expected expected))
 
-(defun slot-form (name conc role slot)
+(defun kind-slot-form (name conc role slot)
   (destructuring-bind (slot default type text &rest options) slot
     (let ((reader (symbolicate conc slot)))
       `(make-kind-slot ',slot ,role ',type ,text
@@ -236,9 +236,9 @@ To change the slots of a kind, restart Lisp. Return the name. Signals MALFORMED-
     (check-kind-form name include documentation groups)
     (unless (or (null include) (kind-named include) (find-class include nil environment))
       (reject-clause-of-kind name (list :include include) "an existing kind after :include"))
-    (kind-definition name include constructor documentation groups)))
+    (kind-definition-form name include constructor documentation groups)))
 
-(defun kind-definition (name include constructor documentation groups)
+(defun kind-definition-form (name include constructor documentation groups)
   (let ((conc (concatenate 'string (symbol-name name) "-")))
     `(progn
        (define-record (,name ,@(when include `((:include ,include)))
@@ -250,7 +250,7 @@ To change the slots of a kind, restart Lisp. Return the name. Signals MALFORMED-
        (register-kind ',name ',include
                       (list ,@(loop for (role . slots) in groups
                                     append (loop for slot in slots
-                                                 collect (slot-form name conc role slot))))
+                                                 collect (kind-slot-form name conc role slot))))
                       ,conc)
        (defmethod describe-object ((object ,name) stream)
          (describe-by-kind object stream))

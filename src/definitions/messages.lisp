@@ -2,9 +2,11 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(error-policy warn-at-once warn-notably *message-queue* make-message-queue message-queue
+(export '(error-policy warn-at-once queue-notable-warning *message-queue* make-message-queue
+                       message-queue
           copy-message-queue message *reported-robot* *reporting-run* *request-origin* take-messages
-          queue-message queue-items message-text phrase write-message *message-limit* make-message))
+          queue-message queue-message-items message-text phrase write-message *message-limit*
+          make-message))
 
 ;;; Messages are queued as lists of items and become text when they are read. The queue is
 ;;; bounded: beyond *MESSAGE-LIMIT* the oldest are dropped and counted.
@@ -22,7 +24,7 @@ an addition.")
   '(member :report :signal :collect))
 
 (defvar *request-origin* nil
-  "The origin, a value of NOTE-OF-ASKER, of the request this thread's messages are about; or NIL.")
+  "The origin, a value of CURRENT-ASKER-NOTE, of the request this thread's messages are about; or NIL.")
 
 (defvar *reported-robot* nil
   "The name of the robot that messages queued in this thread are about, or NIL.")
@@ -128,7 +130,7 @@ listener, errors are shown at once"))
     (cond (listener (funcall listener))
           ((shown-at-once-p message queue) (echo-message message queue)))))
 
-(defun queue-items (kind items &rest options)
+(defun queue-message-items (kind items &rest options)
   "Queue a message of KIND with ITEMS and OPTIONS, the arguments of MAKE-MESSAGE. Return nothing."
   (queue-message (apply #'make-message kind items options) *message-queue*)
   (values))
@@ -136,25 +138,25 @@ listener, errors are shown at once"))
 (public error-set)
 (defun error-set (&rest stuff)
   "Queue an error message of the items STUFF, printed as by OUT. Return nothing (manual 3.7)."
-  (queue-items :error stuff))
+  (queue-message-items :error stuff))
 
 (public warning-set)
 (defun warning-set (&rest stuff)
   "Queue a warning of the items STUFF, printed as by OUT. Return nothing (manual 3.7)."
-  (queue-items :warning stuff))
+  (queue-message-items :warning stuff))
 
-(defun warn-notably (&rest stuff)
+(defun queue-notable-warning (&rest stuff)
   "Queue a warning of the items STUFF. If still unread at the end, show it then. Return nothing."
-  (queue-items :warning stuff :notable-p t))
+  (queue-message-items :warning stuff :notable-p t))
 
 (defun warn-at-once (&rest stuff)
   "Queue a warning of the items STUFF. If the queue has no listener, show it now. Return nothing."
-  (queue-items :warning stuff :notable-p :at-once))
+  (queue-message-items :warning stuff :notable-p :at-once))
 
 (public message-set)
 (defun message-set (&rest stuff)
   "Queue a message of the items STUFF, printed as by OUT. Return nothing (manual 3.7)."
-  (queue-items :message stuff))
+  (queue-message-items :message stuff))
 
 (defun take-messages (&optional (queue *message-queue*))
   "Empty QUEUE. Return a list of its messages, the oldest first, at most *MESSAGE-LIMIT*. If older

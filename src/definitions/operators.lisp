@@ -56,7 +56,7 @@ given, the text also says what is wrong with VALUE."
 (define-argument-type 'speed #'sane-number-p "a speed in metres per tick, from -1e9 to 1e9")
 (define-argument-type 'ticks #'sane-number-p "a number of ticks, from -1e9 to 1e9")
 (define-argument-type 'tick-span #'whole-p "a whole number of ticks, from 0 to 1e9")
-(define-argument-type 'quantity #'quantity-p "a number from -1e15 to 1e15")
+(define-argument-type 'quantity #'bounded-number-p "a number from -1e15 to 1e15")
 (define-argument-type 'amount #'amount-p "a number not below 0, up to 1e15")
 (define-argument-type 'probability #'probability-p "a probability from 0 to 1")
 (define-argument-type 'integer #'integerp "a whole number")
@@ -88,9 +88,9 @@ but not a whole number of degrees. (An angle computed with a unit or pi usually 
 ;;; An operator has argument types, and a function that repeats the request when a journal is
 ;;; replayed. A journal can call nothing else.
 
-(define-record (journal-operator (:conc-name operator-)
-                                 (:constructor make-operator (name types rest function))
-                                 (:predicate operator-p))
+(define-record (journalled-operator (:conc-name operator-)
+                                    (:constructor make-operator (name types rest function))
+                                    (:predicate operator-p))
   "A request that a run accepts."
   (name nil symbol "the name of the operator, a symbol" :export)
   (types '() list "the types of the arguments")

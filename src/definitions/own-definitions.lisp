@@ -10,7 +10,7 @@
     (unless (eql (slot-value object name) (slot-value model name))
       (setf (slot-value object name) (slot-value model name)))))
 
-(defun snapshot-entry (entry)
+(defun entry-snapshot (entry)
   "Return a list: ENTRY, a copy of its object, and a list with its variable's value (NIL: unbound)."
   (let ((variable (entry-variable entry)))
     (list entry
@@ -49,7 +49,7 @@ to restore afterwards. Signals MISUSE if another thread is inside."
          (values (mapcar #'symbol-value variables))
          (kept (loop for registry in *registries*
                      collect (cons registry
-                                   (mapcar #'snapshot-entry (registry-entries registry))))))
+                                   (mapcar #'entry-snapshot (registry-entries registry))))))
     (in-any-case
       (funcall function)
       (loop for (registry . entries) in kept

@@ -3,7 +3,7 @@
 (in-package :ars-magna.definitions)
 
 (export '(call-with-parameters call-with-parameter-values parameter-values digest-parameters
-          follow-parameters changed-parameters))
+          synchronize-parameters changed-parameters))
 
 ;; Much faster than PROGV for parameters defined before this is compiled, as all of ours are.
 (defmacro with-parameters-bound ((values) &body body)
@@ -14,7 +14,7 @@
            ,values
          ,@body))))
 
-(defun check-settings (settings)
+(defun check-parameter-settings (settings)
   (unless (and (proper-list-p settings)
                (loop for setting in settings
                      always (and (proper-list-p setting) (= 2 (length setting)))))
@@ -25,7 +25,7 @@
   "Call FUNCTION with every parameter bound: to its value in SETTINGS, a list of lists (name value),
 or else to its current value. Changes of parameters by FUNCTION end with the call. Signals
 WRONG-ARGUMENT for an invalid value and UNKNOWN-NAME for an unknown parameter."
-  (check-settings settings)
+  (check-parameter-settings settings)
   (let* ((settings (loop for (name value) in settings
                          collect (cons (parameter-symbol (find-parameter name)) value)))
          (values (loop for parameter in (registry-objects *parameters*)
@@ -45,7 +45,7 @@ end, store the parameters' values in VALUES. Return the values of FUNCTION."
         (replace values (parameter-values))))))
 
 (defun parameter-values ()
-  "Return a vector of the current values of all parameters, for FOLLOW-PARAMETERS."
+  "Return a vector of the current values of all parameters, for SYNCHRONIZE-PARAMETERS."
   (map 'vector (lambda (parameter) (symbol-value (parameter-symbol parameter)))
        (registry-objects *parameters*)))
 
@@ -74,7 +74,7 @@ are added by name, and only if they differ from their defaults. So earlier diges
   (handler-case (progn (check-parameter-value parameter value) t)
     (wrong-argument (trouble) (error-set (princ-to-string trouble)) nil)))
 
-(defun follow-parameters (known global-p note)
+(defun synchronize-parameters (known global-p note)
   "Find the parameters changed since the last update of KNOWN, a vector as PARAMETER-VALUES returns,
 and update KNOWN. Call NOTE with the symbol and new value of each. If GLOBAL-P is true, the
 caller is a thread with its own bindings of parameters: adopt values that other threads have set

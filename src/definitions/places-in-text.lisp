@@ -11,19 +11,19 @@
 (defun skip-blanks (text i)
   "Return the position of the first character in TEXT, from I on, outside blanks and comments."
   (loop while (< i (length text))
-        do (cond ((blank-p (char text i)) (incf i))
+        do (cond ((blank-character-p (char text i)) (incf i))
                  ((skip-comment text i) (setf i (skip-comment text i)))
                  (t (return))))
   i)
 
-(defvar *last-element* '("" 0 0 nil)
+(defvar *element-bounds-cache* '("" 0 0 nil)
   "A cache, because callers request elements in order: the arguments of the last call of
 ELEMENT-BOUNDS, and the start that it returned. The list is replaced, never modified.")
 
 (defun element-bounds (text start number)
   "Return the start and end in TEXT of element NUMBER of the list at START; NIL if unreadable."
   (with-form-reader (text)
-    (destructuring-bind (last-text last-start last-number last-begin) *last-element*
+    (destructuring-bind (last-text last-start last-number last-begin) *element-bounds-cache*
       (let ((known-p (and last-begin (eq text last-text) (= start last-start)
                           (<= last-number number))))
         (flet ((end-of-form (position)
@@ -35,7 +35,7 @@ ELEMENT-BOUNDS, and the start that it returned. The list is replaced, never modi
               (loop repeat (if known-p (- number last-number) number)
                     do (setf begin (skip-blanks text end)
                              end (end-of-form begin)))
-              (setf *last-element* (list text start number begin))
+              (setf *element-bounds-cache* (list text start number begin))
               (values begin end))))))))
 
 (defun bounds-of-location (text location)
@@ -48,7 +48,7 @@ form cannot be found, return the start and end of the smallest form around it."
           (unless inner-start (return (values start end)))
           (setf start inner-start end inner-end))))))
 
-(defun line-in-text (file form location)
+(defun form-line-in-file (file form location)
   "Return the line of FORM in FILE. If FORM is NIL or not found, return the line of LOCATION, a
 value of LOCATION-IN-TEXT. Return NIL if both fail."
   (and location
@@ -71,7 +71,7 @@ and the line where the reader stopped; if the form does not end, the line where 
 NIL for other conditions. Works only while the file is open."
   (let ((stream (and (typep condition 'reader-error) (stream-error-stream condition))))
     (when (and stream (open-stream-p stream) (form-start stream))
-      (let ((cause (cause-of-reading-trouble condition)))
+      (let ((cause (cause-of-reading-error condition)))
         (values (native-name (pathname stream))
                 (cond ((typep cause 'end-of-file) (line-of-form-being-read stream))
                       ((undecodable-format cause) (line-of-next-character stream))
@@ -83,4 +83,4 @@ form, or NIL if the line is unknown. Return NIL if no file is being compiled."
   (multiple-value-bind (path location) (compiler-location)
     (when path
       (let ((file (native-name path)))
-        (values file (line-in-text file nil location))))))
+        (values file (form-line-in-file file nil location))))))

@@ -212,7 +212,7 @@ replaces, or NIL. If several threads define NAME at a time, each replaces a diff
   (loop
     (let* ((old (entry-to-replace name registry))
            (variable (and variable (choose-variable name old registry)))
-           (source (if *marking-p* *simulator-source* (current-source)))
+           (source (if *loading-simulator-p* *simulator-source* (current-source)))
            (new (make-entry name object source variable)))
       (when (replace-entry old new registry before value)
         (when old (warn-if-replaced old new registry))
@@ -250,7 +250,7 @@ in order. SOURCE is a definition's file, :OWN for the simulator's, or NIL for ty
   (undo-definition (entry-object entry))
   (when (entry-variable entry) (forget-value (entry-variable entry))))
 
-(defun check-undefinable (registry entry)
+(defun check-may-undefine (registry entry)
   (when (or (registry-fixed-p registry)
             (and (registry-sealed-p registry) (not (users-entry-p entry))))
     (reject-use "The ~A ~(~A~) cannot be undefined: the simulator needs it."
@@ -267,7 +267,7 @@ for some definitions of the simulator; WRONG-ARGUMENT unless KIND and NAME are s
   (let ((registry (find-registry kind)))
     (find-definition name registry t)
     (let ((entry (lookup-entry name registry)))
-      (check-undefinable registry entry)
+      (check-may-undefine registry entry)
       (deferring-interrupts
         (with-lock (*registries-lock*)
           (set-entries registry (remove entry (registry-entries registry))))

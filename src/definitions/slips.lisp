@@ -4,7 +4,7 @@
 
 (export '(note-error-code similar-variable note-dispatch-character value-to-pass-text
           function-of-command public-function-named doubtful-test-text map-calls map-comparisons
-          compared-words test-forms values-used-in wrong-error-code-text))
+          compared-words test-forms value-forms-in wrong-error-code-text))
 
 (defun public-function-named (name)
   "Return two values if ARS or NISP exports a function named NAME, a string or symbol: the symbol of
@@ -148,7 +148,7 @@ value to pass in its place; or NIL.")
   "Return a sentence that says why DATUM is no argument of TYPE, or which value to give; or NIL."
   (let ((type (and (symbolp type) (find-argument-type type nil))))
     (when (and type (or (argument-trouble-text datum type) (returning-function-known-p type)))
-      (sentence (format nil "Give ~A" (argument-type-text type datum))))))
+      (add-full-stop (format nil "Give ~A" (argument-type-text type datum))))))
 
 (defun error-hint (condition)
   "Return a sentence on what the user perhaps meant, or what to do, after a Lisp CONDITION; or NIL."
@@ -171,14 +171,14 @@ or NIL. The layer that defines fluents has methods.")
 
 ;;; Words that something is compared with: keywords, and what may be meant for one.
 
-(defun word-p (object)
+(defun word-constant-p (object)
   "True if OBJECT, a constant, may be meant as a word such as an error code."
   (or (stringp object) (and (symbolp object) (not (member object '(nil t otherwise))))))
 
-(defun words-in (object)
+(defun word-constants-in (object)
   (if (consp object)
-      (remove-if-not #'word-p (ldiff object (cdr (last object))))
-      (and (word-p object) (list object))))
+      (remove-if-not #'word-constant-p (ldiff object (cdr (last object))))
+      (and (word-constant-p object) (list object))))
 
 (defun constant-word (form)
   (cond ((typep form '(cons (eql quote) (cons symbol null))) (second form))
@@ -192,14 +192,14 @@ or NIL. The layer that defines fluents has methods.")
                   (proper-list-p arguments)
                   (= count (length arguments)))))
       (cond ((and (is 2 'eq 'eql 'equal) (constant-word (second arguments)))
-             (values (words-in (constant-word (second arguments))) (first arguments)))
+             (values (word-constants-in (constant-word (second arguments))) (first arguments)))
             ((is 2 'eq 'eql 'equal)
-             (values (words-in (constant-word (first arguments))) (second arguments)))
+             (values (word-constants-in (constant-word (first arguments))) (second arguments)))
             ((and (is 2 'member) (typep (second arguments) '(cons (eql quote) (cons t null))))
-             (values (words-in (second (second arguments))) (first arguments)))
+             (values (word-constants-in (second (second arguments))) (first arguments)))
             ((and (member (first form) '(case ecase ccase)) (proper-list-p arguments))
              (values (loop for clause in (rest arguments)
-                           when (consp clause) append (words-in (first clause)))
+                           when (consp clause) append (word-constants-in (first clause)))
                      (first arguments)))))))
 
 (defun map-calls (function form)
@@ -232,7 +232,7 @@ compared form, the word, and the form that compares them."
   (cond ((lisp-call-p form "IF" "WHEN" "UNLESS") (list (second form)))
         ((lisp-call-p form "COND") (mapcar #'first (remove-if #'atom (rest form))))))
 
-(defun values-used-in (form)
+(defun value-forms-in (form)
   "Return a list of the forms whose values the form FORM binds, stores or tests."
   (cond ((lisp-call-p form "LET" "LET*")
          (loop for binding in (and (proper-list-p (second form)) (second form))

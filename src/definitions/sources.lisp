@@ -92,7 +92,7 @@ belongs to the last call; it is replaced, never modified."
   (cond ((char= #\; (char text i)) (or (position #\Newline text :start i) (length text)))
         ((starts-at-p "#|" text i) (skip-block-comment text i))))
 
-(defun skip-text (text i)
+(defun skip-non-code (text i)
   "Return the end of the comment, string or escaped character that begins in TEXT at I; else NIL."
   (cond ((skip-comment text i))
         ((find (char text i) "\"|") (skip-quoted text i))
@@ -103,7 +103,7 @@ belongs to the last call; it is replaced, never modified."
   (let ((positions '()) (i start))
     (loop while (< i end)
           do (when (char= #\( (char text i)) (push i positions))
-             (setf i (or (skip-text text i) (1+ i))))
+             (setf i (or (skip-non-code text i) (1+ i))))
     (nreverse positions)))
 
 (defun word-at-p (text position word)
@@ -132,7 +132,7 @@ belongs to the last call; it is replaced, never modified."
 EQUAL-P is true if the form equals FORM."
   (caching (text form) (find-definitions-in-text text form)))
 
-(defun position-of-definition (positions ordinal)
+(defun choose-definition-position (positions ordinal)
   "Return an element of POSITIONS, a value of DEFINITION-POSITIONS, and its number: the element
 whose form is unchanged; else number ORDINAL; else the first."
   (let ((number (or (position-if #'third positions)
@@ -146,7 +146,7 @@ whose form is unchanged; else number ORDINAL; else the first."
     (loop for position in (open-parentheses text start end)
           collect (cons position (read-words position)))))
 
-(defvar *last-form-search* '(())
+(defvar *form-position-cache* '(())
   "A cache, a cons: the list that FORM-POSITION has searched last, and the tail of this list that
 begins with the form found. The cons is replaced, never modified.")
 
@@ -157,9 +157,9 @@ than once, prefer the first position after that of the last search."
   (let ((forms (caching (text start end) (forms-in text start end))))
     (flet ((look (from)
              (let ((tail (member form from :key #'cdr :test #'same-printed-form-p)))
-               (when tail (setf *last-form-search* (cons forms tail)))
+               (when tail (setf *form-position-cache* (cons forms tail)))
                (car (first tail)))))
-      (or (and (eq forms (car *last-form-search*)) (look (cdr *last-form-search*)))
+      (or (and (eq forms (car *form-position-cache*)) (look (cdr *form-position-cache*)))
           (look forms)))))
 
 (defun word-position (text form start end)
@@ -186,7 +186,7 @@ END; or NIL."
 ordinal of FORM among the definitions with the same operator and name. If CLAUSE is not found,
 return the line of the definition, or NIL."
   (let ((positions (and form (definition-positions text form))))
-    (multiple-value-bind (place number) (position-of-definition positions nil)
+    (multiple-value-bind (place number) (choose-definition-position positions nil)
       (destructuring-bind (&optional (start 0) (end (length text)) same) place
         (declare (ignore same))
         (let ((position (or (and (consp clause) (form-position text clause start end))
@@ -216,7 +216,7 @@ return the line of the definition, or NIL."
   "Return the definition FORM as it now is in FILE. FORM is number ORDINAL among the definitions
 with its operator and name. Signals MISUSE if it is not found."
   (let* ((text (read-file-into-string (native-path file)))
-         (place (position-of-definition (definition-positions text form) ordinal)))
+         (place (choose-definition-position (definition-positions text form) ordinal)))
     (unless place
       (reject-use "~A has no (~(~A ~A~) ...) that can be read." file (first form) (second form)))
     (values (read-from-string text t nil :start (first place)))))
@@ -231,8 +231,9 @@ with its operator and name. Signals MISUSE if it is not found."
   (with-output-to-string (stream)
     (let ((i 0) (last #\() (blank nil))
       (loop while (< i (length text))
-            do (let* ((char (char text i)) (code (not (or (blank-p char) (skip-comment text i))))
-                      (end (or (skip-text text i) (1+ i))))
+            do (let* ((char (char text i))
+                      (code (not (or (blank-character-p char) (skip-comment text i))))
+                      (end (or (skip-non-code text i) (1+ i))))
                  (when code
                    (unless (or (not blank) (paren-p last) (paren-p char))
                      (write-char #\Space stream))
@@ -243,7 +244,7 @@ with its operator and name. Signals MISUSE if it is not found."
 (defun form-end (text start)
   (loop with depth = 0 and i = start
         while (< i (length text))
-        do (let ((skipped (skip-text text i)))
+        do (let ((skipped (skip-non-code text i)))
              (cond (skipped (setf i skipped))
                    (t (case (char text i)
                         (#\( (incf depth))
@@ -268,19 +269,19 @@ leave out the top-level forms with that operator."
   (let ((text (read-file-into-string file :external-format :latin-1)))
     (caching (text without)
       (let ((code (code-without-comments text)) (digest (make-digest)))
-        (add-characters (if without (code-without-forms without code) code) digest)
+        (add-characters-to-digest (if without (code-without-forms without code) code) digest)
         (digest-value digest)))))
 
-(defun add-characters (text digest)
+(defun add-characters-to-digest (text digest)
   (loop for char across text do (digest-add digest char)))
 
 (defun form-digest (form)
   "Return a digest of FORM: of its shape, the names of its symbols, and its data."
   (let ((digest (make-digest)))
-    (add-form form digest (make-hash-table :test 'eq))
+    (add-form-to-digest form digest (make-hash-table :test 'eq))
     (digest-value digest)))
 
-(defun add-integer (integer digest)
+(defun add-integer-to-digest (integer digest)
   (loop for rest = integer then (ash rest -64)
         do (digest-add digest rest)
         until (<= -1 rest 0)))
@@ -301,18 +302,19 @@ occurrence, kept in the table KNOWN."
     (symbol (digest-add digest (if (symbol-package atom)
                                    (symbol-name atom)
                                    (ensure-gethash atom known (hash-table-count known)))))
-    (string (add-characters atom digest))
-    (integer (add-integer atom digest))
-    (ratio (add-integer (numerator atom) digest) (add-integer (denominator atom) digest))
+    (string (add-characters-to-digest atom digest))
+    (integer (add-integer-to-digest atom digest))
+    (ratio (add-integer-to-digest (numerator atom) digest)
+           (add-integer-to-digest (denominator atom) digest))
     (t (digest-add digest atom))))
 
-(defun add-form (form digest known)
+(defun add-form-to-digest (form digest known)
   (cond ((form-behind-comma form)
          (digest-add digest "comma")
-         (add-form (form-behind-comma form) digest known))
+         (add-form-to-digest (form-behind-comma form) digest known))
         ((consp form)
          (digest-add digest "list")
-         (loop while (consp form) do (add-form (pop form) digest known))
+         (loop while (consp form) do (add-form-to-digest (pop form) digest known))
          (digest-add digest "end")
-         (when form (add-form form digest known)))
+         (when form (add-form-to-digest form digest known)))
         (t (add-atom-to-digest form digest known))))

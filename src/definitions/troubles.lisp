@@ -2,8 +2,10 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(queue-user-error user-code-errors-in forget-errors show-unread-messages *echo-output*
-          drop-unsignalled take-unread-messages signal-trouble answering-debugger debugger-asking
+(export '(queue-user-error user-code-errors-in remove-errors-of-runs show-unread-messages
+                           *echo-output*
+          drop-unsignalled-errors take-unread-messages signal-pending-error answering-debugger
+          asking-debugger-text
           end-inquiries *inquiry-hooks* *debugger-refused-p*))
 
 ;;; A message has a cause if it reports an error in users' code, or the failure of a plan that
@@ -37,7 +39,7 @@ WITH-SIMULATION), RUN-TICKS, RUN-UNTIL, RUN-PLAN and WITH-SIMULATION signal this
 (defun queue-user-error (cause text &rest stuff)
   "Queue an error message with the items STUFF about CAUSE, a condition in users' code or a failure
 of a plan. TEXT is the message on one line. Return nothing."
-  (queue-items :error stuff :cause cause :summary text))
+  (queue-message-items :error stuff :cause cause :summary text))
 
 (defun error-of-message (message)
   (make-condition 'user-code-error :text (message-summary message) :cause (message-cause message)))
@@ -50,19 +52,19 @@ of a plan. TEXT is the message on one line. Return nothing."
           when (funcall run-p (message-run message))
             collect (error-of-message message))))
 
-(defun forget-errors (queue run-p)
+(defun remove-errors-of-runs (queue run-p)
   "Remove from QUEUE the errors of users' code that belong to runs for which RUN-P is true.
 Otherwise the queue would keep finished runs from being garbage collected."
   (with-queue (queue)
     (setf (message-queue-troubles queue)
           (remove-if run-p (message-queue-troubles queue) :key #'message-run))))
 
-(defun drop-unsignalled (queue)
+(defun drop-unsignalled-errors (queue)
   "Mark the errors of users' code in QUEUE so that none of them is signalled."
   (with-queue (queue)
     (setf (message-queue-unsignalled queue) nil)))
 
-(defun take-unsignalled (queue)
+(defun take-unsignalled-error (queue)
   "Remove from QUEUE the first error that must be signalled. Return it as a USER-CODE-ERROR, or NIL.
 Later errors now in QUEUE will not be signalled."
   (when (message-queue-unsignalled queue)
@@ -75,10 +77,10 @@ Later errors now in QUEUE will not be signalled."
             (decf (message-queue-count queue)))
           (error-of-message message))))))
 
-(defun signal-trouble (queue)
+(defun signal-pending-error (queue)
   "If QUEUE has a pending error of users' code, signal it. Return true if a handler continues after
 the error; NIL if there was none."
-  (let ((trouble (take-unsignalled queue)))
+  (let ((trouble (take-unsignalled-error queue)))
     (when trouble
       (with-simple-restart (continue "Let the other ticks pass.")
         (error trouble))
@@ -86,7 +88,7 @@ the error; NIL if there was none."
 
 ;;; Unread messages.
 
-(defparameter *shown-unread-messages* 20
+(defparameter *unread-message-limit* 20
   "The largest number of different unread messages that are shown.")
 
 (defun take-unread-messages (queue)
@@ -101,13 +103,13 @@ the error; NIL if there was none."
       (let ((text (write-message message nil (text-with-command message))))
         (when (= 1 (incf (gethash text counts 0))) (push text texts))))
     (loop for text in (reverse texts)
-          repeat *shown-unread-messages*
+          repeat *unread-message-limit*
           do (format stream "~A~:[~; (~D times)~]~%" (string-right-trim '(#\Newline) text)
                      (< 1 (gethash text counts)) (gethash text counts)))
-    (when (< *shown-unread-messages* (length texts))
+    (when (< *unread-message-limit* (length texts))
       (format stream "... and ~D other messages. To show all, call (error-display) within ~
                       the simulation.~%"
-              (- (length texts) *shown-unread-messages*)))))
+              (- (length texts) *unread-message-limit*)))))
 
 (defun shown-at-end-p (message policy)
   "True if MESSAGE, which is unread, must be shown at the end of its run under POLICY."
@@ -133,7 +135,7 @@ the error; NIL if there was none."
 (defvar *echo-output* nil
   "The stream on which the user of this Lisp sees messages of runs; NIL for the error output.")
 
-(defconstant +counted-texts+ 1000 "The largest number of texts that are counted.")
+(defconstant +counted-text-limit+ 1000 "The largest number of texts that are counted.")
 
 (defvar *echo-counter* (make-message-queue :echoed (make-hash-table :test 'equal))
   "The queue that counts the messages shown for queues that have no table ECHOED.")
@@ -143,7 +145,7 @@ the error; NIL if there was none."
   (let* ((counter (if (message-queue-echoed queue) queue *echo-counter*))
          (counts (message-queue-echoed counter)))
     (with-queue (counter)
-      (when (< +counted-texts+ (hash-table-count counts)) (clrhash counts))
+      (when (< +counted-text-limit+ (hash-table-count counts)) (clrhash counts))
       (incf (gethash text counts 0)))))
 
 (defun power-of-ten-p (count)
@@ -189,7 +191,7 @@ are called before the debugger asks for a restart, in the thread of the error.")
 (defun debugger-name (hook)
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
-(defun debugger-asking (thread)
+(defun asking-debugger-text (thread)
   "If a debugger asks for a restart of THREAD, return a text that names the debugger; else NIL."
   (let ((inquiry (find thread *inquiries* :key #'inquiry-thread)))
     (and inquiry (debugger-name (inquiry-hook inquiry)))))

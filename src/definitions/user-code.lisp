@@ -3,9 +3,9 @@
 (in-package :ars-magna.definitions)
 
 (export '(*asker* asker-note asker-forked-p *continues-in-forks-p* continues-in-forks-p
-          note-of-asker note-text call-user-code *user-error-hooks* note-debugger-waiting
+          current-asker-note asker-note-text call-user-code *user-error-hooks* note-debugger-waiting
           report-break continue-in-user-code user-calls make-user-calls *user-calls* as-users-code
-          abort-user-code *leaving-ends-work-p* brief-text text-of-origin recurring-code
+          abort-user-code *leaving-ends-work-p* brief-condition-text text-of-origin recurring-code
           recurring-remedy report-user-error))
 
 ;;; Several parties may drive a robot, so users want to know whose command is in progress. Code that
@@ -37,12 +37,12 @@ does. In a fork, the copy of ASKER is notified when its commands end.")
   "True if this thread now makes requests that forks of the run repeat by themselves."
   (or *continues-in-forks-p* (asker-forked-p *asker*)))
 
-(defun note-of-asker ()
+(defun current-asker-note ()
   "Return the note by which messages name *ASKER*, the origin of requests."
   (asker-note *asker*))
 
-(defun note-text (note)
-  "Return NOTE, a value of NOTE-OF-ASKER, as a string."
+(defun asker-note-text (note)
+  "Return NOTE, a value of CURRENT-ASKER-NOTE, as a string."
   (with-output-to-string (stream) (write-items (ensure-list note) stream)))
 
 ;;;; Calls
@@ -85,9 +85,9 @@ thread is loading, or NIL. Can be set" :writable :export)
           (incf (user-calls-count calls))
           (setf (user-calls-origin calls) origin
                 (user-calls-waiting-p calls) nil)
-          (unwind-protect (call-interruptible (interrupts-deferred-p) function)
+          (unwind-protect (call-allowing-interrupts-if (interrupts-deferred-p) function)
             (setf (user-calls-origin calls) outer)))
-        (call-interruptible (interrupts-deferred-p) function))))
+        (call-allowing-interrupts-if (interrupts-deferred-p) function))))
 
 (defmacro as-users-code ((origin) &body body)
   "Run BODY, users' code that ORIGIN names, as CALL-AS-USERS-CODE calls a function."
@@ -105,7 +105,7 @@ thread is loading, or NIL. Can be set" :writable :export)
 
 ;;; Reporting.
 
-(defun brief-text (condition)
+(defun brief-condition-text (condition)
   "Return the report of CONDITION, on one line of at most 2000 characters."
   (cut (one-line (text-of-condition condition)) 2000))
 
@@ -119,9 +119,10 @@ thread is loading, or NIL. Can be set" :writable :export)
 (defun report-user-error (condition origin)
   "Queue an error message, and call the hooks, for CONDITION in ORIGIN, an item or list of items.
 For a RUN-IS-OVER-ERROR, a request of a finished run, queue only a message, not a USER-CODE-ERROR."
-  (let ((text (format nil "Error in ~A: ~A" (text-of-origin origin) (brief-text condition)))
+  (let ((text (format nil "Error in ~A: ~A" (text-of-origin origin)
+                      (brief-condition-text condition)))
         (stuff (list* "Error in " (append (ensure-list origin)
-                                          (list ": " (brief-text condition))))))
+                                          (list ": " (brief-condition-text condition))))))
     (call-listeners *user-error-hooks* text)
     (if (typep condition 'run-is-over-error)
         (apply #'error-set stuff)
@@ -130,7 +131,7 @@ For a RUN-IS-OVER-ERROR, a request of a finished run, queue only a message, not 
 (defun report-break (condition origin)
   "Queue a message that CONDITION, which is no error, was signalled in ORIGIN."
   (apply #'message-set "Break in "
-         (append (ensure-list origin) (list ": " (brief-text condition)))))
+         (append (ensure-list origin) (list ": " (brief-condition-text condition)))))
 
 ;;; Code that runs by itself, such as a kicker, may fail again and again.
 
@@ -157,7 +158,7 @@ part of. The run goes on."
 (define-constant +leave+ "Report it and leave " :test #'string=
   :documentation "The beginning of the restart ABORT's report in a call of users' code.")
 
-(defun stoppable-p (condition)
+(defun thread-stoppable-p (condition)
   "True if the work of this thread can be stopped, regardless of CONDITION."
   (declare (ignore condition))
   (and *user-calls* (user-calls-stop *user-calls*) t))
@@ -188,7 +189,7 @@ possible, calls AGAIN; STOP-SIMULATOR, if possible, stops the work of this threa
     (restart-bind ((abort go-on :report-function #'offer-abort)
                    (retry again :report-function #'offer-retry :test-function #'retriable-p)
                    (stop-simulator #'stop :report-function #'offer-stop
-                                          :test-function #'stoppable-p))
+                                          :test-function #'thread-stoppable-p))
       (funcall function))))
 
 (defmacro with-user-code-restarts ((origin go-on again) &body body)
@@ -225,7 +226,7 @@ queue an error message that names ORIGIN (an item or list of items), and return 
               (again () (go again)))
          (declare (dynamic-extent #'go-on #'again))
          (flet ((note (condition)
-                  (let-callers-handle condition)
+                  (signal-to-callers-first condition)
                   (setf trouble condition)
                   (when *break-on-user-error* (invoke-debugger condition))
                   (go-on))

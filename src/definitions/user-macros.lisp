@@ -13,7 +13,7 @@
   "Signal MALFORMED-DEFINITION about FORM, a use of a macro. EXPECTED describes a valid form;
 CONDITION is the error that occurred, or NIL."
   (reject-clause (if (consp (rest form))
-                     (title (first form) (second form))
+                     (definition-title (first form) (second form))
                      (string-downcase (first form)))
                  (abridged form)
                  (format nil "~A~@[ (~A)~]" expected

@@ -157,11 +157,11 @@ arguments are those of SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the erro
     (call-with-frames (lambda (snapshot) (push snapshot snapshots))
                       journal (frame-step journal every until) until :part part)
     (let* ((snapshots (reverse snapshots)) (first (first snapshots)))
-      (framed-text first
-                   (lambda (canvas)
-                     (draw-terrain canvas (snapshot-map first) :layers layers)
-                     (write-frames-of canvas snapshots rate layers))
-                   :layers layers :in-color in-color :scale scale :title title))))
+      (framed-picture-svg first
+                          (lambda (canvas)
+                            (draw-terrain canvas (snapshot-map first) :layers layers)
+                            (write-frames-of canvas snapshots rate layers))
+                          :layers layers :in-color in-color :scale scale :title title))))
 
 (addition journal-moments)
 (define-with-keywords journal-moments

@@ -34,7 +34,7 @@
 
 ;;; Things.
 
-(defun images-shown (robot)
+(defun displayed-thing-images (robot)
   (remove-if-not #'thing-image-p
                  (append (mapcar #'designator-image-denotation (robot-image-designators robot))
                          (loop for camera in (robot-image-cameras robot)
@@ -53,7 +53,7 @@ robot, so that their widths are in proportion.")
 
 (defun size-unit (robot)
   "Return the width in pixels of a thing of size 1 with which the largest thing fits all displays."
-  (let ((largest (reduce #'max (mapcar #'thing-image-size (images-shown robot))
+  (let ((largest (reduce #'max (mapcar #'thing-image-size (displayed-thing-images robot))
                          :initial-value 0)))
     (if (< (* largest +greatest-size-unit+) +object-width+)
         +greatest-size-unit+
@@ -78,7 +78,7 @@ of the thing, but at least 2."
   (with-color black*
     (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (1- +object-height+))))
 
-(defun draw-thing-block (canvas image x y)
+(defun draw-thing-rectangle (canvas image x y)
   "Draw the thing of IMAGE as a rectangle, which is filled if the thing blocks movement and crossed
 out if the thing obstructs view."
   (let* ((width (thing-width image)) (right (+ x (max 0 (1- width))))
@@ -115,7 +115,7 @@ out if the thing obstructs view."
 (defun draw-thing-with-title (canvas image x y width)
   (with-subject (canvas image)
     (let ((wide (cond ((draw-by-draw-function canvas image x y) +object-width+)
-                      (t (draw-thing-block canvas image x y)
+                      (t (draw-thing-rectangle canvas image x y)
                          (thing-width image)))))
       (draw-line-of-text canvas (+ x wide +margin+) (- y 2) width (subject-title image)))))
 
@@ -160,29 +160,29 @@ out if the thing obstructs view."
 
 ;;; Cameras.
 
-(defconstant +dial-radius+ 30 "The radius of the picture of a camera, in pixels.")
+(defconstant +camera-symbol-radius+ 30 "The radius of the picture of a camera, in pixels.")
 
 (defun draw-tracking-line (canvas x y angle)
   (with-color (layer-ink :tracks)
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext*
-                     (append (point-at-distance x y angle (* 1/2 +dial-radius+))
-                             (point-at-distance x y angle +dial-radius+))))))
+                     (append (point-at-distance x y angle (* 1/2 +camera-symbol-radius+))
+                             (point-at-distance x y angle +camera-symbol-radius+))))))
 
-(defun draw-dial (canvas robot camera y)
+(defun draw-camera-symbol (canvas robot camera y)
   "Draw the field of view of CAMERA as a wedge, in its direction on the map. A short line shows the
 believed direction of the thing that CAMERA tracks."
-  (let* ((x (+ +margin+ +dial-radius+)) (y (+ y +dial-radius+))
+  (let* ((x (+ +margin+ +camera-symbol-radius+)) (y (+ y +camera-symbol-radius+))
          (half (* 1/2 (camera-image-field-of-view camera)))
          (angle (+ (robot-image-angle robot) (camera-image-angle camera)))
          (track (camera-image-track camera)))
     (with-color (svref lightblue* 9)
-      (draw-arc canvas draw-gcontext* (- x +dial-radius+) (- y +dial-radius+)
-                (* 2 +dial-radius+) (* 2 +dial-radius+)
+      (draw-arc canvas draw-gcontext* (- x +camera-symbol-radius+) (- y +camera-symbol-radius+)
+                (* 2 +camera-symbol-radius+) (* 2 +camera-symbol-radius+)
                 (- (+ angle half)) (* 2 half) in-color*))
     (draw-lines canvas draw-gcontext*
-                (append (point-at-distance x y (- angle half) +dial-radius+) (list x y)
-                        (point-at-distance x y (+ angle half) +dial-radius+)))
+                (append (point-at-distance x y (- angle half) +camera-symbol-radius+) (list x y)
+                        (point-at-distance x y (+ angle half) +camera-symbol-radius+)))
     (when track
       (draw-tracking-line canvas x y
                           (+ (robot-image-angle robot) (designator-image-angle track))))))
@@ -195,7 +195,7 @@ display takes no new view, so that it shows only what the robot knows."
               (camera-image-view-age camera) (camera-image-view camera))
       "View: none requested yet"))
 
-(defun draw-track-line (canvas track x y width)
+(defun draw-tracked-object (canvas track x y width)
   "Write type and distance of TRACK, the image of a tracked designator, and draw what it denotes."
   (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
                       (designator-image-distance track))))
@@ -204,14 +204,15 @@ display takes no new view, so that it shows only what the robot knows."
 
 (defun draw-camera (canvas robot camera y width)
   "Draw CAMERA from Y down. Return the y coordinate of the end of the drawing."
-  (let ((left (+ (* 2 +margin+) (* 2 +dial-radius+))) (track (camera-image-track camera)) (next y))
+  (let ((left (+ (* 2 +margin+) (* 2 +camera-symbol-radius+))) (track (camera-image-track camera))
+        (next y))
     (with-subject (canvas camera)
-      (draw-dial canvas robot camera y)
+      (draw-camera-symbol canvas robot camera y)
       (setf next (draw-paragraph canvas left (+ y 6) width (view-text camera)))
-      (when track (draw-track-line canvas track left next width))
+      (when track (draw-tracked-object canvas track left next width))
       (draw-location canvas (camera-image-location camera)
                      left (+ next +line-height+) width))
-    (+ +margin+ (max (+ y (* 2 +dial-radius+)) (+ next (* 2 +line-height+))))))
+    (+ +margin+ (max (+ y (* 2 +camera-symbol-radius+)) (+ next (* 2 +line-height+))))))
 
 ;;; Hands.
 
@@ -259,14 +260,14 @@ then draws one part.")
   :documentation "The names of the displays: bird's eye view, robot state, robot designators,
 cameras, hands and storage bins.")
 
-(defconstant +detail-width+ 340
+(defconstant +robot-display-width+ 340
   "The width of each display except the display of the world, in pixels.")
 
 (defun display-title (display)
   "Return the title of the window of DISPLAY, one of +DISPLAYS+ (manual B)."
   (if (eq :world display) "World" (second (assoc display +details+))))
 
-(defun draw-detail (canvas display robot width)
+(defun draw-robot-display (canvas display robot width)
   "Draw DISPLAY, any except the world, of ROBOT, WIDTH pixels wide. Return its height in pixels."
   (destructuring-bind (draw &optional parts) (cddr (assoc display +details+))
     (let ((*size-unit* (size-unit robot)))
@@ -279,13 +280,13 @@ cameras, hands and storage bins.")
   "Draw DISPLAY of ROBOT with title and frame, from X, Y down. Return its height in pixels."
   (let ((height 0) (top (+ +line-height+ 2)))
     (with-origin (canvas x (+ y top))
-      (setf height (draw-detail canvas display robot +detail-width+)))
+      (setf height (draw-robot-display canvas display robot +robot-display-width+)))
     (with-origin (canvas x y)
       (with-color (svref grey* 56)
-        (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ top in-color*))
+        (draw-rectangle canvas draw-gcontext* 0 0 +robot-display-width+ top in-color*))
       (draw-text canvas +margin+ 13 (display-title display))
       (with-color (svref grey* 40)
-        (draw-rectangle canvas draw-gcontext* 0 0 +detail-width+ (+ top height))))
+        (draw-rectangle canvas draw-gcontext* 0 0 +robot-display-width+ (+ top height))))
     (+ top height 1)))
 
 (defun draw-all-displays (canvas snapshot robot layers title)
@@ -294,17 +295,17 @@ cameras, hands and storage bins.")
     (let ((left (+ width +margin+)) (bottom 0))
       (dolist (display (rest +displays+))
         (incf bottom (+ (draw-titled-display canvas display robot left bottom) +margin+)))
-      (values (+ left +detail-width+ 1) (max height bottom)))))
+      (values (+ left +robot-display-width+ 1) (max height bottom)))))
 
 (defun draw-display (canvas display snapshot robot &key (layers *picture-layers*)
-                                                     (width +detail-width+) title)
+                                                     (width +robot-display-width+) title)
   "Draw DISPLAY, one of +DISPLAYS+ or :ALL, on CANVAS. ROBOT is the image of a robot in SNAPSHOT.
 Return the width and height in pixels. WIDTH is the width of the displays except the world. LAYERS
 and TITLE are for the world: see DRAW-FRAMED. Call this within WITH-CANVAS."
   (case display
     (:all (draw-all-displays canvas snapshot robot layers title))
     (:world (draw-framed-world canvas snapshot layers :title title))
-    (t (values width (draw-detail canvas display robot width)))))
+    (t (values width (draw-robot-display canvas display robot width)))))
 
 (defun check-display (operator display)
   (unless (member display (cons :all +displays+))

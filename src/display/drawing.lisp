@@ -25,7 +25,7 @@
   (unless (every #'sane-number-p numbers)
     (reject-argument operator "coordinates" numbers "numbers of pixels, from -1e9 to 1e9")))
 
-(defun check-sequence (operator canvas gcontext numbers multiple)
+(defun check-coordinate-sequence (operator canvas gcontext numbers multiple)
   (check-drawing operator canvas gcontext numbers)
   (unless (zerop (mod (length numbers) multiple))
     (reject-argument operator "coordinates" numbers
@@ -42,7 +42,7 @@ multiple of MULTIPLE numbers."
                        WRONG-ARGUMENT." documentation)
          ,@declarations
          ,(if many
-              `(check-sequence ',name ,canvas ,gcontext ,@numbers)
+              `(check-coordinate-sequence ',name ,canvas ,gcontext ,@numbers)
               `(check-drawing ',name ,canvas ,gcontext (list ,@numbers)))
          ,@forms
          nil))))

@@ -6,11 +6,11 @@
 ;;; SVG is stored once: from frame to frame few of them change.
 
 ;; Read when this file is loaded, so that a saved program contains them.
-(defun source-text (name)
+(defun film-source-text (name)
   (file-text (asdf:system-relative-pathname "ars-magna" (format nil "src/display/~A" name))))
 
-(defparameter *film-script* (source-text "film.js") "The program in a film.")
-(defparameter *film-style* (source-text "film.css") "How a film looks.")
+(defparameter *film-script* (film-source-text "film.js") "The program in a film.")
+(defparameter *film-style* (film-source-text "film.css") "How a film looks.")
 
 ;;; Frames.
 
@@ -85,7 +85,7 @@ the differences; other frames are written whole."
   (write-quoted (moment-description moment several-p) out)
   (write-char #\} out))
 
-(defun write-data (reel ticks rate moments several-p out)
+(defun write-film-data (reel ticks rate moments several-p out)
   (write-string "var FILM = {\"rate\":" out)
   (write-number rate out)
   (write-string ",\"ticks\":" out)
@@ -124,7 +124,7 @@ list items. If SEVERAL-P, name the robots of MOMENTS."
   (dolist (moment moments)
     (format out "<li><button><i class=\"~(~A~)\"></i>tick ~A: " (moment-kind moment)
             (number-text (moment-tick moment)))
-    (write-text (moment-description moment several-p) out)
+    (write-escaped-text (moment-description moment several-p) out)
     (format out "</button></li>~%"))
   (format out "</ol>~%</details>~%<details~:[~; hidden~] open><summary>Legend</summary>~%~
                <ul id=\"legend\">~%~A</ul></details>~%</aside>~%"
@@ -136,9 +136,9 @@ frames replace its group `movers'. LAST-PICTURE, an SVG document of the last fra
 without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MOMENTS."
   (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%")
   (format out "<meta name=\"viewport\" content=\"width=device-width\">~%<title>")
-  (write-text title out)
+  (write-escaped-text title out)
   (format out "</title>~%<style>~%~A</style></head><body>~%<h1>" *film-style*)
-  (write-text title out)
+  (write-escaped-text title out)
   (format out "</h1>~%<noscript><p>Enable scripts in your browser to play this film. Below are ~
                its first and its last frame.</p></noscript>~%")
   (format out "<main><div id=\"stage\">~%~A<noscript>~%~A</noscript></div>~%" picture last-picture)
@@ -146,7 +146,7 @@ without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MO
   (format out "</main>~%")
   (write-controls out)
   (format out "<script>~%")
-  (write-data reel ticks rate moments several-p out)
+  (write-film-data reel ticks rate moments several-p out)
   (format out "</script>~%<script>~%~A</script>~%</body></html>~%" *film-script*))
 
 ;;; Making a film. Its legend stands beside the picture, so that the picture can be large. It lists
@@ -157,7 +157,7 @@ without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MO
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
-(defun still-svg (snapshot movers layers in-color scale)
+(defun whole-frame-svg (snapshot movers layers in-color scale)
   "Return SVG for the map of SNAPSHOT with LAYERS, and above it MOVERS in a group `movers'."
   (with-output-to-string (out)
     (with-svg (canvas out :color-p in-color)
@@ -191,7 +191,7 @@ to their images. ROBOTS are images of robots. LINES are legend entries of lines,
     (dolist (entry (line-entries snapshot layers))
       (pushnew entry (film-contents-lines contents) :key #'entry-text :test #'string=))))
 
-(defun film-entries (contents layers)
+(defun film-legend-entries (contents layers)
   (let ((opening (film-contents-opening contents))
         (things (hash-table-values (film-contents-things contents))))
     (legend-entries (make-snapshot :map (snapshot-map opening) :part (snapshot-part opening)
@@ -206,16 +206,16 @@ to their images. ROBOTS are images of robots. LINES are legend entries of lines,
   (with-output-to-string (out)
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
       (with-canvas (canvas)
-        (dolist (entry (film-entries contents layers))
+        (dolist (entry (film-legend-entries contents layers))
           (format out "<li")
           (when (entry-whole entry)
             (format out " title=\"")
-            (write-text (entry-whole entry) out)
+            (write-escaped-text (entry-whole entry) out)
             (format out "\""))
           (format out "><svg width=\"20\" height=\"18\" viewBox=\"0 0 20 18\">~%")
           (funcall (entry-sample entry) canvas 10 9)
           (format out "</svg> ")
-          (write-text (entry-text entry) out)
+          (write-escaped-text (entry-text entry) out)
           (format out "</li>~%"))))))
 
 (defun record-film (journal every until watch part layers in-color scale)
@@ -238,7 +238,7 @@ values: the reel, the ticks of its frames, SVGs of the first and last frames, an
                         (add-frame last reel))
                       journal (frame-step journal every until) until :part part :watch watch)
     (flet ((still (movers)
-             (still-svg (film-contents-opening contents) movers shown in-color scale)))
+             (whole-frame-svg (film-contents-opening contents) movers shown in-color scale)))
       (values reel (reverse ticks) (still first) (still last) contents))))
 
 (defun film-text (journal moments &key every until rate kinds layers in-color scale title part)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(nth-cyclic nth-ink to-pixels pixels-of with-halo point-at-distance
+(export '(nth-cyclic nth-ink to-pixels points-to-pixels with-halo point-at-distance
           draw-circle box-around overlap-p))
 
 ;;; Lines are dark and have a light halo. The line is visible on light ground, the halo on dark
@@ -49,7 +49,7 @@ way. NIL means a solid line.")
   "Return METRES converted to pixels by GRAPHICS-SCALE*."
   (* metres graphics-scale*))
 
-(defun pixels-of (points)
+(defun points-to-pixels (points)
   "Return POINTS, a list of coordinates in metres, converted to pixels."
   (mapcar #'to-pixels points))
 

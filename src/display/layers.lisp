@@ -7,7 +7,7 @@
 ;;; Terrain never changes, and a canvas may cache it. Movers are drawn over it. Angles grow
 ;;; clockwise from the right, on the map and on the canvas.
 
-(defun shown-at-depth (depth layers image &rest more)
+(defun shown-layers-at-depth (depth layers image &rest more)
   "Return lists (layer shown . MORE) for those of LAYERS that are at DEPTH and show something of
 IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a robot or camera."
   (loop for layer in (layers-at-depth depth layers)
@@ -16,23 +16,23 @@ IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a robo
                         (getf (robot-image-notes image) (%layer-name layer)))
         when shown collect (list* layer shown more)))
 
-(defun shown-below-things (snapshot layers)
+(defun shown-layers-below-things (snapshot layers)
   "Return what LAYERS show of SNAPSHOT below things, the lowest layer first, as a list of the same
-form as that of SHOWN-AT-DEPTH."
-  (append (shown-at-depth :ways layers snapshot)
+form as that of SHOWN-LAYERS-AT-DEPTH."
+  (append (shown-layers-at-depth :ways layers snapshot)
           (loop for robot in (snapshot-robots snapshot)
                 append (loop for camera in (robot-image-cameras robot)
-                             append (shown-at-depth :looks layers camera robot snapshot)
-                             append (shown-at-depth :cameras layers camera robot snapshot))
-                append (shown-at-depth :robots layers robot robot snapshot))
-          (shown-at-depth :things layers snapshot)))
+                             append (shown-layers-at-depth :looks layers camera robot snapshot)
+                             append (shown-layers-at-depth :cameras layers camera robot snapshot))
+                append (shown-layers-at-depth :robots layers robot robot snapshot))
+          (shown-layers-at-depth :things layers snapshot)))
 
-(defun shown-above-things (snapshot layers)
+(defun shown-layers-above-things (snapshot layers)
   (loop for robot in (snapshot-robots snapshot)
-        append (shown-at-depth :labels layers robot robot snapshot)))
+        append (shown-layers-at-depth :labels layers robot robot snapshot)))
 
-(defun all-shown (snapshot layers)
-  (append (shown-below-things snapshot layers) (shown-above-things snapshot layers)))
+(defun all-shown-layers (snapshot layers)
+  (append (shown-layers-below-things snapshot layers) (shown-layers-above-things snapshot layers)))
 
 (defun draw-shown-layers (canvas shown)
   (loop for (layer . arguments) in shown
@@ -46,13 +46,13 @@ form as that of SHOWN-AT-DEPTH."
   (let* ((map (snapshot-map snapshot)) (around (* 2 +robot-overhang+))
          (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
     (with-clipping (canvas 0 0 width height)
-      (draw-shown-layers canvas (shown-below-things snapshot layers)))
+      (draw-shown-layers canvas (shown-layers-below-things snapshot layers)))
     (with-clipping (canvas (- +robot-overhang+) (- +robot-overhang+)
                            (+ width around) (+ height around))
       (draw-robots canvas (snapshot-robots snapshot)))
     (with-clipping (canvas 0 0 width height)
       (draw-things canvas (snapshot-things snapshot))
-      (draw-shown-layers canvas (shown-above-things snapshot layers))
+      (draw-shown-layers canvas (shown-layers-above-things snapshot layers))
       (when (member :names layers) (draw-names canvas snapshot layers)))))
 
 ;;;; The layers, in the order of menus
@@ -78,7 +78,7 @@ form as that of SHOWN-AT-DEPTH."
 (define-layer :rays "Rays of the last view"
   "The rays of the last view of each camera, in colours for the readings."
   :depth :looks :shown 'camera-image-look :draw 'draw-rays
-  :ink (first +ray-inks+) :dashes '(1 3) :legend "rays" :last-p t :entries 'reading-entries)
+  :ink (first +ray-inks+) :dashes '(1 3) :legend "rays" :last-p t :entries 'sensor-reading-entries)
 
 (define-layer :tracks "Tracks"
   "The believed position of each object that a camera tracks."
@@ -105,15 +105,15 @@ form as that of SHOWN-AT-DEPTH."
 
 (define-layer :planned-way "Planned way"
   "The way that each robot is about to go, if its program publishes the way: see PUBLISH-WAY."
-  :default-p t :depth :ways :shown 'robots-with-plans :draw 'draw-planned-ways
-  :boxes 'ends-of-planned-ways
+  :default-p t :depth :ways :shown 'robots-with-planned-ways :draw 'draw-planned-ways
+  :boxes 'planned-way-end-boxes
   :dashes '(6 4) :width 2 :legend "planned way"
-  :text-name :plan :text 'planned-marks)
+  :text-name :plan :text 'planned-way-marks)
 
 (define-layer :reach "What moves by itself"
   "A dashed ring around each thing that has kickers. The distance that kickers can move a thing is
 unknown."
-  :depth :things :shown 'things-with-kickers :draw 'draw-reach
+  :depth :things :shown 'moving-thing-images :draw 'draw-reach
   :ink #x5A3A00 :dashes '(3 3) :legend "may move")
 
 (define-layer :names "Names"

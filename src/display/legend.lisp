@@ -55,7 +55,7 @@ MORE-AND-WIDTH are optional: a text to append to NAME, and the width of the samp
         do (setf joined longer)
         finally (return (format nil "~A~@[ and ~D more~]" joined (and rest (length rest))))))
 
-(defun names-entry (names sample)
+(defun several-names-entry (names sample)
   "Return a legend entry for several NAMES of things that look the same. NAMES are lists (name more)
 of two strings. SAMPLE is a function that draws the sample."
   (flet ((texts (function)
@@ -77,7 +77,7 @@ of two strings. SAMPLE is a function that draws the sample."
 
 ;;; Walls: the substances, with the range of their parameters.
 
-(defun map-cells-shown (function snapshot)
+(defun call-for-shown-cells (function snapshot)
   "Call FUNCTION with the index of each cell in the part of the map that SNAPSHOT shows."
   (destructuring-bind (left top right bottom) (shown-part snapshot)
     (loop with width = (map-width (snapshot-map snapshot))
@@ -98,7 +98,7 @@ number and the range of its parameters. The lists are sorted by number."
                      (setf (second range) (min parameter (second range))
                            (third range) (max parameter (third range)))
                      (push (list substance parameter parameter) ranges))))))
-      (map-cells-shown #'note snapshot))
+      (call-for-shown-cells #'note snapshot))
     (sort ranges #'< :key #'first)))
 
 (defun range-text (least greatest)
@@ -132,7 +132,7 @@ number and the range of its parameters. The lists are sorted by number."
 
 (defun place-types-of (snapshot)
   (let ((map (snapshot-map snapshot)) (numbers '()))
-    (map-cells-shown (lambda (index) (pushnew (aref (map-places map) index) numbers)) snapshot)
+    (call-for-shown-cells (lambda (index) (pushnew (aref (map-places map) index) numbers)) snapshot)
     (loop for type across (map-place-types map) for number from 0
           when (and (member number numbers) (plusp number) (drawn-place-type-p type))
             collect type)))
@@ -154,9 +154,9 @@ number and the range of its parameters. The lists are sorted by number."
 (defun place-entries (snapshot)
   (loop for types in (group-by (place-types-of snapshot) #'place-mark-svg)
         collect (let ((type (first types)))
-                  (names-entry (loop for each in types
-                                     collect (list (drawn-name (place-type-name each)) ""))
-                               (lambda (canvas x y) (draw-place-sample canvas type x y))))))
+                  (several-names-entry (loop for each in types
+                                             collect (list (drawn-name (place-type-name each)) ""))
+                                       (lambda (canvas x y) (draw-place-sample canvas type x y))))))
 
 ;;; Things: each look once, with the names of all things that look so.
 
@@ -188,10 +188,10 @@ number of things if several have the same name, else an empty text."
   (if in-color*
       (loop for images in (things-by-look snapshot)
             collect (let ((image (first images)))
-                      (names-entry (names-with-counts images)
-                                   (lambda (canvas x y)
-                                     (draw-thing-sample canvas image x y
-                                                        (sample-half-width image))))))
+                      (several-names-entry (names-with-counts images)
+                                           (lambda (canvas x y)
+                                             (draw-thing-sample canvas image x y
+                                                                (sample-half-width image))))))
       (and (plusp (length (snapshot-things snapshot)))
            (list (entry-with-sample (canvas x y) "thing"
                    (let ((graphics-scale* 12)) (draw-upright-line canvas x y)))))))
@@ -215,7 +215,7 @@ number of things if several have the same name, else an empty text."
 (defun jump-entries (ways snapshot color)
   "Return a list with the legend entry for jumps, drawn in COLOR, if SNAPSHOT shows a jump in WAYS.
 A jump is where a robot was put elsewhere. WAYS are lists of pieces, x y ... in pixels."
-  (and (jump-visible-p ways (pixels-of (shown-part snapshot)))
+  (and (jump-visible-p ways (points-to-pixels (shown-part snapshot)))
        (list (entry-with-sample (canvas x y) "put elsewhere"
                (draw-jump-dots canvas (list (list (- x 8) y (+ x 7) y)) color)))))
 
@@ -224,7 +224,7 @@ A jump is where a robot was put elsewhere. WAYS are lists of pieces, x y ... in 
                       collect (pieces-of-trail (robot-image-trail robot)))
                 snapshot (nth-ink 0)))
 
-(defun reading-entries (snapshot)
+(defun sensor-reading-entries (snapshot)
   (declare (ignore snapshot))
   (when in-color*
     (list (entry-with-sample (canvas x y) "read: low to high"
@@ -243,7 +243,7 @@ A jump is where a robot was put elsewhere. WAYS are lists of pieces, x y ... in 
         when (%layer-entries layer) append (funcall (%layer-entries layer) snapshot)))
 
 (defun line-entries (snapshot layers)
-  (let* ((shown (mapcar #'first (all-shown snapshot layers)))
+  (let* ((shown (mapcar #'first (all-shown-layers snapshot layers)))
          (drawn (remove-if-not (lambda (layer) (member layer shown)) *layers*))
          (drawn (append (remove-if #'%layer-last-p drawn) (remove-if-not #'%layer-last-p drawn))))
     (append (mapcar #'line-entry (remove nil drawn :key #'%layer-legend))

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.display)
 
-(export '(user-graphics-scale drawn-scale wrap-text-to-width draw-framed with-map-svg framed-text))
+(export '(user-graphics-scale drawn-scale wrap-text-to-width draw-framed with-map-svg
+                              framed-picture-svg))
 
 (defconstant +usual-scale+ 8 "The default of GRAPHICS-SCALE*.")
 
@@ -94,7 +95,7 @@ above +GREATEST-UNMAGNIFIED-SCALE+."
 
 ;;; The legend.
 
-(defun columns-of (entries rows)
+(defun divide-into-columns (entries rows)
   (loop while entries
         collect (loop repeat rows while entries collect (pop entries))))
 
@@ -114,13 +115,13 @@ above +GREATEST-UNMAGNIFIED-SCALE+."
 (defun columns-below (entries width)
   "Return ENTRIES divided into columns, together at most WIDTH pixels wide and as low as possible."
   (loop for rows from 1
-        for columns = (columns-of entries rows)
+        for columns = (divide-into-columns entries rows)
         when (or (null (rest columns)) (<= (columns-width columns) width))
           return columns))
 
 ;;; The whole.
 
-(defun arrangement-with (room edge map-height columns below-p)
+(defun arrangement-with-columns (room edge map-height columns below-p)
   "Return an arrangement for a map MAP-HEIGHT pixels high and EDGE pixels wide, with the legend
 COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of MARGINS-FOR-LAYERS."
   (destructuring-bind (left top right bottom) room
@@ -136,15 +137,17 @@ COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of MARGINS-FOR
 (defun arrangement-area (arrangement)
   (* (arrangement-width arrangement) (arrangement-height arrangement)))
 
-(defun arrange (snapshot layers entries)
+(defun smallest-arrangement (snapshot layers entries)
   "Return the smallest arrangement for a picture of SNAPSHOT with LAYERS and a legend of ENTRIES."
   (multiple-value-bind (width height) (shown-size snapshot)
     (flet ((with (columns below-p)
-             (arrangement-with (margins-for-layers layers)
-                               (max (to-pixels width)
-                                    (if (member :scale-bar layers) (scale-bar-width width) 0))
-                               (to-pixels height) columns below-p)))
-      (let ((beside (with (columns-of entries (max 8 (floor (to-pixels height) +line-height+)))
+             (arrangement-with-columns (margins-for-layers layers)
+                                       (max (to-pixels width)
+                                            (if (member :scale-bar layers) (scale-bar-width width)
+                                                0))
+                                       (to-pixels height) columns below-p)))
+      (let ((beside (with (divide-into-columns entries
+                                               (max 8 (floor (to-pixels height) +line-height+)))
                           nil))
             (below (with (columns-below entries (max (to-pixels width) 480)) t)))
         (if (< (arrangement-area below) (arrangement-area beside)) below beside)))))
@@ -155,7 +158,7 @@ COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of MARGINS-FOR
 (defconstant +title-step+ 17 "The distance between lines of a title, in pixels.")
 (defconstant +subtitle-size+ 11 "The height of the font of subtitles, in pixels.")
 (defconstant +subtitle-step+ 15 "The distance between lines of a subtitle, in pixels.")
-(defconstant +least-title+ 360 "The least room for a line of a title, in pixels.")
+(defconstant +least-title-width+ 360 "The least room for a line of a title, in pixels.")
 
 (defun wrap-text-to-width (text width per-character)
   "Return TEXT, a string or NIL, as a list of lines of at most WIDTH pixels. A character is
@@ -170,7 +173,7 @@ PER-CHARACTER pixels wide."
 (defun add-title (arrangement title subtitle per-pixel)
   "Add TITLE and, below it, SUBTITLE, a string or NIL, to ARRANGEMENT. The width of a character is
 PER-PIXEL times the height of its font."
-  (let* ((room (max +least-title+ (arrangement-width arrangement)))
+  (let* ((room (max +least-title-width+ (arrangement-width arrangement)))
          (room (- room (arrangement-left arrangement) (arrangement-right arrangement)))
          (title-character (* per-pixel +title-size+))
          (subtitle-character (* per-pixel +subtitle-size+))
@@ -195,7 +198,7 @@ PER-PIXEL times the height of its font."
   "Return a title for a picture with ROBOTS, a list of their names as drawn, in the map named MAP."
   (format nil "~@[~A in ~]~A" (and robots (join-names robots)) (drawn-name map)))
 
-(defun map-title (snapshot)
+(defun default-picture-title (snapshot)
   "Return the default title of a picture of SNAPSHOT: its robots, map and tick."
   (format nil "~A, tick ~D"
           (robots-and-map-title (mapcar #'robot-title (snapshot-robots snapshot))
@@ -262,11 +265,11 @@ PER-PIXEL times the height of its font."
               (draw-legend canvas arrangement 0 (+ height (if (shown-p :scale-bar) 32 8)))
               (draw-legend canvas arrangement (arrangement-legend-left arrangement) 0)))))))
 
-(defun call-on-part (function canvas snapshot)
+(defun call-on-map-part (function canvas snapshot)
   "Call FUNCTION with the origin of CANVAS in the corner of the map of SNAPSHOT. Clip what FUNCTION
 draws on CANVAS to the part of the map that SNAPSHOT shows."
   (if (snapshot-part snapshot)
-      (destructuring-bind (left top right bottom) (pixels-of (snapshot-part snapshot))
+      (destructuring-bind (left top right bottom) (points-to-pixels (snapshot-part snapshot))
         (with-clipping (canvas 0 0 (- right left) (- bottom top))
           (with-origin (canvas (- left) (- top)) (funcall function))))
       (funcall function)))
@@ -279,13 +282,14 @@ the tick. SUBTITLE is a string or NIL. MORE are the first entries of the legend.
 of LEGEND-ENTRIES for the other entries."
   (let* ((entries (and (member :legend layers)
                        (append more (apply #'legend-entries snapshot layers legend))))
-         (arrangement (arrange snapshot layers entries))
+         (arrangement (smallest-arrangement snapshot layers entries))
          (left (arrangement-left arrangement)))
     (when (member :title layers)
-      (add-title arrangement (or title (map-title snapshot)) subtitle (character-width canvas 1)))
+      (add-title arrangement (or title (default-picture-title snapshot)) subtitle
+                 (character-width canvas 1)))
     (with-origin (canvas left (arrangement-top arrangement))
       (draw-margins canvas snapshot layers arrangement)
-      (call-on-part draw canvas snapshot))
+      (call-on-map-part draw canvas snapshot))
     (values (arrangement-width arrangement) (arrangement-height arrangement) left)))
 
 (defun draw-framed-world (canvas snapshot layers &key title)
@@ -307,7 +311,7 @@ height in pixels."
 Then write the picture to STREAM as an SVG document. OPTIONS: :layers, :in-color, :scale."
   `(call-with-map-svg (lambda (,canvas) ,@body) ,stream ,snapshot ,@options))
 
-(defun framed-text (snapshot draw &key layers in-color scale title subtitle more legend)
+(defun framed-picture-svg (snapshot draw &key layers in-color scale title subtitle more legend)
   "Return an SVG document of SNAPSHOT. DRAW, a function of a canvas, draws the map and its contents.
 The other arguments are those of WITH-MAP-SVG and DRAW-FRAMED."
   (with-output-to-string (out)

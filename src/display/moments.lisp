@@ -3,7 +3,7 @@
 (in-package :ars-magna.display)
 
 (export '(make-moment make-moments-watcher moments-in-remarks checked-moments check-moment-kinds
-          moments-of-kinds sort-moments moment-weight moment-description))
+          moments-of-kinds sort-moments moment-rank moment-description))
 
 ;;; A journal records requests, not their results. So it is replayed. After each tick a watcher
 ;;; compares what each robot holds and has in its bins, and what failed last, with the tick before.
@@ -136,14 +136,14 @@ of them are moments, or lists (tick text [robot]), up to the tick END."
   "Return MOMENTS sorted by tick."
   (stable-sort (copy-list moments) #'< :key #'moment-tick))
 
-(defparameter *expected-codes* '(:robot-blocked :not-tracking :lost-track :track-lost)
+(defparameter *expected-error-codes* '(:robot-blocked :not-tracking :lost-track :track-lost)
   "The error codes of failures that plans usually expect and handle.")
 
-(defun moment-weight (moment)
+(defun moment-rank (moment)
   "Return the rank of MOMENT by importance, from 0, the most important, to 3."
   (case (moment-kind moment)
     (:note 0)
-    (:failure (if (member (moment-code moment) *expected-codes*) 3 2))
+    (:failure (if (member (moment-code moment) *expected-error-codes*) 3 2))
     (:part 2)
     (t 1)))
 

@@ -96,7 +96,7 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
             (draw-thing-sample canvas image x y (thing-half-width image))
             (draw-upright-line canvas x y))))))
 
-(defun things-with-kickers (snapshot)
+(defun moving-thing-images (snapshot)
   (coerce (remove-if-not #'thing-image-moving-p (snapshot-things snapshot)) 'list))
 
 (defun draw-reach (canvas images)
@@ -119,7 +119,7 @@ cells are large, so that the ring fits into a map of one cell."
 
 (defconstant +ring-distance+ 4 "The distance between the rings of robots on one spot, in pixels.")
 
-(defun same-spot-p (image other)
+(defun rings-coincide-p (image other)
   "True if the robots of IMAGE and OTHER are so close that their rings would look like one ring."
   (> (robot-radius)
      (* 2 (to-pixels (max (abs (- (robot-image-x image) (robot-image-x other)))
@@ -129,14 +129,14 @@ cells are large, so that the ring fits into a map of one cell."
   "Return the radius of the ring of IMAGE, one of ROBOTS, in pixels. The ring is around the rings of
 earlier ROBOTS on the same spot."
   (+ (robot-radius)
-     (* +ring-distance+ (count-on-spot image (ldiff robots (member image robots))))))
+     (* +ring-distance+ (count-coinciding-rings image (ldiff robots (member image robots))))))
 
-(defun count-on-spot (image robots)
-  (count-if (lambda (other) (same-spot-p image other)) robots))
+(defun count-coinciding-rings (image robots)
+  (count-if (lambda (other) (rings-coincide-p image other)) robots))
 
-(defun spot-radius (image robots)
+(defun widest-ring-radius (image robots)
   "Return the radius in pixels of the widest of ROBOTS' rings around the robot of IMAGE."
-  (+ (robot-radius) (* +ring-distance+ (1- (count-on-spot image robots)))))
+  (+ (robot-radius) (* +ring-distance+ (1- (count-coinciding-rings image robots)))))
 
 (defun draw-arrowhead (canvas x y radius angle fill-p)
   (let ((tip (point-at-distance x y angle radius)))
@@ -148,7 +148,7 @@ earlier ROBOTS on the same spot."
                         (and (not fill-p) tip))
                 :fill-p fill-p)))
 
-(defun hollow-head-p (position)
+(defun hollow-arrowhead-p (position)
   "True if the arrowhead of the robot at POSITION in its world's list of robots is drawn hollow."
   (and (not in-color*) (oddp (floor position (length +line-dashes+)))))
 
@@ -170,7 +170,7 @@ robot in the list of robots of its world."
     (with-gcontext (draw-gcontext* :foreground white*)
       (draw-arrowhead canvas x y (- radius 1) angle t))
     (with-color color
-      (draw-arrowhead canvas x y (- radius 5/2) angle (not (hollow-head-p position))))))
+      (draw-arrowhead canvas x y (- radius 5/2) angle (not (hollow-arrowhead-p position))))))
 
 (defun draw-robot (canvas image radius)
   (with-subject (canvas image)
@@ -191,10 +191,10 @@ robot in the list of robots of its world."
 
 ;;; Fields of view, ended by walls and opaque things, are computed from the snapshot when drawn.
 
-(defconstant +sight-spacing+ 0.015d0
+(defconstant +sight-ray-spacing+ 0.015d0
   "The angle between rays that find the edge of a field of view, in radians.")
 
-(defun opaque-cells (snapshot)
+(defun opaque-cell-test (snapshot)
   "Return a function of a cell's index that returns true if the cell blocks the view in SNAPSHOT."
   (let* ((map (snapshot-map snapshot)) (flags (map-flags map))
          (hidden (loop for image across (snapshot-things snapshot)
@@ -211,12 +211,12 @@ robot in the list of robots of its world."
   (let* ((map (snapshot-map snapshot)) (x (robot-image-x robot)) (y (robot-image-y robot))
          (width (camera-image-field-of-view camera))
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
-         (count (max 2 (ceiling width +sight-spacing+))))
+         (count (max 2 (ceiling width +sight-ray-spacing+))))
     (when (map-index map x y)
-      (let ((ends (ray-ends map (opaque-cells snapshot) x y first (/ width count) (1+ count))))
+      (let ((ends (ray-ends map (opaque-cell-test snapshot) x y first (/ width count) (1+ count))))
         (with-halo ((layer-ink :wedges))
           (draw-lines canvas draw-gcontext*
-                      (pixels-of (append (list x y) ends (list x y)))))))))
+                      (points-to-pixels (append (list x y) ends (list x y)))))))))
 
 ;;; Rays, coloured by their readings.
 
@@ -243,7 +243,7 @@ the greatest substance parameter of MAP."
           for rays = (loop for (x y) on ends by #'cddr
                            for class in classes
                            when (= class number)
-                             append (pixels-of (list (look-x look) (look-y look) x y)))
+                             append (points-to-pixels (list (look-x look) (look-y look) x y)))
           when rays
             do (with-color ink
                  (with-dashes ((layer-dashes :rays))
@@ -263,7 +263,7 @@ to the real position of ROBOT."
 (defun draw-track (canvas designator robot snapshot)
   "Draw a line from ROBOT to the believed position of the object of the tracked DESIGNATOR."
   (declare (ignore snapshot))
-  (let ((target (pixels-of (believed-place robot designator))))
+  (let ((target (points-to-pixels (believed-place robot designator))))
     (with-halo ((layer-ink :tracks) :dashes (layer-dashes :tracks))
       (draw-segments canvas draw-gcontext*
                      (list* (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
@@ -274,13 +274,13 @@ to the real position of ROBOT."
 (defun track-boxes (designator robot snapshot)
   "Return a list with the box, in pixels, of the ring at the believed position of DESIGNATOR."
   (declare (ignore snapshot))
-  (destructuring-bind (x y) (pixels-of (believed-place robot designator))
+  (destructuring-bind (x y) (points-to-pixels (believed-place robot designator))
     (list (box-around x y (+ 2 (track-radius))))))
 
 (defun draw-designator-on-map (canvas robot designator)
   "Draw a cross with the number of DESIGNATOR at the believed position of its object, and a line
 from the cross to the real position of the object."
-  (destructuring-bind (x y) (pixels-of (believed-place robot designator))
+  (destructuring-bind (x y) (points-to-pixels (believed-place robot designator))
     (let ((true-x (designator-image-x designator)) (true-y (designator-image-y designator))
           (color (layer-ink :designators))
           (number (princ-to-string (designator-image-number designator))))
@@ -297,7 +297,7 @@ from the cross to the real position of the object."
   "Return the boxes (left top right bottom) of the crosses and numbers of DESIGNATORS, in pixels."
   (declare (ignore snapshot))
   (loop for designator in designators
-        for (x y) = (pixels-of (believed-place robot designator))
+        for (x y) = (points-to-pixels (believed-place robot designator))
         for text = (princ-to-string (designator-image-number designator))
         collect (list (- x 5) (- y 13) (+ x 9 (monospaced-width text)) (+ y 5))))
 
@@ -321,7 +321,7 @@ from the cross to the real position of the object."
          (heading (odometer-image-heading odometer))
          (half (* 1/2 (odometer-image-spread odometer))))
     (with-halo ((layer-ink :odometer) :dashes (layer-dashes :odometer))
-      (draw-lines canvas draw-gcontext* (pixels-of (odometer-box odometer)))
+      (draw-lines canvas draw-gcontext* (points-to-pixels (odometer-box odometer)))
       (dolist (angle (list (- heading half) (+ heading half)))
         (draw-segments canvas draw-gcontext*
-                       (pixels-of (list* x y (point-at-distance x y angle 3))))))))
+                       (points-to-pixels (list* x y (point-at-distance x y angle 3))))))))

@@ -57,20 +57,21 @@ Return the last value of FUNCTION."
 
 ;;; Names.
 
-(defstruct (spot (:constructor make-spot (name x y half &optional robot)) (:copier nil))
+(defstruct (label-target (:constructor make-label-target (name x y half &optional robot))
+                         (:copier nil))
   "A thing or robot on the map whose name, NAME, is to be written. It is drawn up to HALF pixels
 around X, Y. ROBOT is the image of a robot, or NIL for a thing."
   (name "" :type string :read-only t)
   (x 0 :type real :read-only t) (y 0 :type real :read-only t) (half 0 :type real :read-only t)
   (robot nil :read-only t))
 
-(defun spot-box (spot)
-  (box-around (spot-x spot) (spot-y spot) (spot-half spot)))
+(defun label-target-box (spot)
+  (box-around (label-target-x spot) (label-target-y spot) (label-target-half spot)))
 
 (defconstant +name-size+ 10 "The height of the font of names, in pixels.")
 (defconstant +name-height+ 11 "The height of the box of a name, in pixels.")
 
-(defun name-boxes (x y half width)
+(defun candidate-name-boxes (x y half width)
   "Return boxes, best first, for a name WIDTH pixels wide beside a spot of HALF pixels around X, Y."
   (let ((gap (+ half 2)) (high +name-height+))
     (loop for (left top) in (list (list (+ x gap) (- y (/ high 2)))
@@ -93,15 +94,15 @@ around X, Y. ROBOT is the image of a robot, or NIL for a thing."
           collect (list left top (+ left width) (+ top high)))))
 
 (defun boxes-beside (x y half width marks)
-  "Return boxes like NAME-BOXES. If a box of the index MARKS, such as the ring of a track, overlaps
+  "Return boxes like CANDIDATE-NAME-BOXES. If a box of the index MARKS, such as the ring of a track, overlaps
 the spot, add boxes beside such a ring. Without a ring, names so far away would be ambiguous."
-  (append (name-boxes x y half width)
+  (append (candidate-name-boxes x y half width)
           (and (find-overlapping-item (box-around x y half) marks)
-               (name-boxes x y (max half (+ 2 (track-radius))) width))))
+               (candidate-name-boxes x y (max half (+ 2 (track-radius))) width))))
 
 (defun box-within-shown-part-p (snapshot box)
   (destructuring-bind ((left top right bottom) (first-x first-y last-x last-y))
-      (list box (pixels-of (shown-part snapshot)))
+      (list box (points-to-pixels (shown-part snapshot)))
     (and (<= first-x left) (<= first-y top) (<= right last-x) (<= bottom last-y))))
 
 (defun some-cell-under-box-p (map box function)
@@ -117,7 +118,7 @@ overlaps. BOX must be within MAP."
 (defun on-wall-p (map box)
   (some-cell-under-box-p map box (lambda (index) (logtest +wall+ (aref (map-flags map) index)))))
 
-(defun on-mark-p (map box)
+(defun on-place-mark-p (map box)
   (some-cell-under-box-p map box (lambda (index)
                                    (drawn-place-type-p (svref (map-place-types map)
                                                               (aref (map-places map) index))))))
@@ -128,7 +129,7 @@ overlaps. BOX must be within MAP."
           thereis (do-trail ((robot-image-trail robot) x y)
                         thereis (and (< left (to-pixels x) right) (< top (to-pixels y) bottom))))))
 
-(defconstant +thick-wall+ 4
+(defconstant +least-wall-covering-scale+ 4
   "The least scale, in pixels per cell, at which names may hide parts of walls.")
 
 (defun box-cost (snapshot layers box anywhere-p)
@@ -137,9 +138,9 @@ nothing, 1 for a trail, 2 for marks of places, 3 for a trail and marks, 4 for a 
 Return NIL if BOX is on a thin wall and ANYWHERE-P is false: then no name may be in BOX."
   (let ((map (snapshot-map snapshot)))
     (cond ((not (on-wall-p map box))
-           (+ (if (and (member :places layers) (on-mark-p map box)) 2 0)
+           (+ (if (and (member :places layers) (on-place-mark-p map box)) 2 0)
               (if (and (member :trail layers) (on-trail-p snapshot box)) 1 0)))
-          ((or anywhere-p (<= +thick-wall+ graphics-scale*)) 4))))
+          ((or anywhere-p (<= +least-wall-covering-scale+ graphics-scale*)) 4))))
 
 (defun best-box (snapshot layers boxes taken &key anywhere-p (own-p (constantly t)))
   "Return the box in BOXES that hides least (see BOX-COST), or NIL if no box is possible. The box

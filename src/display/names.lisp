@@ -26,10 +26,10 @@ already has lower-case letters."
 (defun thing-image-name (image)
   (drawn-name (thing-name (thing-image-thing image))))
 
-(defun robot-spot (robot robots)
-  (make-spot (short-name (robot-title robot))
-             (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
-             (+ 1 (spot-radius robot robots)) robot))
+(defun robot-label-target (robot robots)
+  (make-label-target (short-name (robot-title robot))
+                     (to-pixels (robot-image-x robot)) (to-pixels (robot-image-y robot))
+                     (+ 1 (widest-ring-radius robot robots)) robot))
 
 ;;; Of things in one place the small ones are drawn last. A thing hides those of its own size.
 
@@ -37,27 +37,27 @@ already has lower-case letters."
   "Return a list for the image of a thing. If one thing hides another, their lists are EQUALP."
   (list (thing-image-x image) (thing-image-y image) (thing-half-width image)))
 
-(defun thing-spot (image hidden)
-  (make-spot (format nil "~A~@[ and ~D more~]" (short-name (thing-image-name image))
-                     (and (plusp hidden) hidden))
-             (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
-             (thing-half-width image)))
+(defun thing-label-target (image hidden)
+  (make-label-target (format nil "~A~@[ and ~D more~]" (short-name (thing-image-name image))
+                             (and (plusp hidden) hidden))
+                     (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
+                     (thing-half-width image)))
 
-(defun thing-spots (images)
+(defun thing-label-targets (images)
   "Return the spots of the things in IMAGES that no other thing hides. IMAGES are in the order of
 drawing, the largest thing first."
   (let ((piles (make-hash-table :test 'equalp)))
     (dolist (image images) (push image (gethash (pile-key image) piles)))
     (loop for image in images
           for (top . hidden) = (gethash (pile-key image) piles)
-          when (eq image top) collect (thing-spot image (length hidden)))))
+          when (eq image top) collect (thing-label-target image (length hidden)))))
 
-(defun named-spots (snapshot)
+(defun label-targets (snapshot)
   "Return the spots of the robots and things that get names on the map, in order of importance."
   (append (loop with robots = (snapshot-robots snapshot)
-                for robot in robots collect (robot-spot robot robots))
-          (thing-spots (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
-                                    :key #'thing-image-size))))
+                for robot in robots collect (robot-label-target robot robots))
+          (thing-label-targets (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
+                                            :key #'thing-image-size))))
 
 ;;; Lines to names.
 
@@ -65,21 +65,22 @@ drawing, the largest thing first."
 ;;; beside one, there may be no room for such a name. Then the name stands farther off, and a thin
 ;;; line leads to it. The line crosses no other robot if that can be avoided.
 
-(defun confusable-p (spot other)
+(defun names-confusable-p (spot other)
   "True if the name of SPOT could be taken for the name of OTHER. This is false for spots at the
 same point and for rings around each other, whose names belong together."
   (not (or (eq spot other)
-           (and (spot-robot spot) (spot-robot other)
-                (same-spot-p (spot-robot spot) (spot-robot other)))
-           (and (= (spot-x spot) (spot-x other)) (= (spot-y spot) (spot-y other))))))
+           (and (label-target-robot spot) (label-target-robot other)
+                (rings-coincide-p (label-target-robot spot) (label-target-robot other)))
+           (and (= (label-target-x spot) (label-target-x other))
+                (= (label-target-y spot) (label-target-y other))))))
 
-(defun confusable-spots (spot spots reach)
+(defun confusable-label-targets (spot spots reach)
   "Return the SPOTS within REACH pixels of SPOT whose names could be confused with that of SPOT."
   (flet ((near-p (from to) (< (abs (- from to)) reach)))
     (remove-if-not (lambda (other)
-                     (and (near-p (spot-x spot) (spot-x other))
-                          (near-p (spot-y spot) (spot-y other))
-                          (confusable-p spot other)))
+                     (and (near-p (label-target-x spot) (label-target-x other))
+                          (near-p (label-target-y spot) (label-target-y other))
+                          (names-confusable-p spot other)))
                    spots)))
 
 (defun nearest-point-in-box (box x y)
@@ -98,37 +99,39 @@ same point and for rings around each other, whose names belong together."
   "The least difference in pixels between a name's distances to another robot and to its own.")
 (defconstant +thing-margin+ 3 "The value of +ROBOT-MARGIN+ if one of the two is a thing.")
 
-(defun spot-distance (spot box)
+(defun distance-from-label-target (spot box)
   "Return the distance in pixels of BOX from SPOT, a ring or a square: 0 or less for an overlap."
-  (let ((x (spot-x spot)) (y (spot-y spot)) (half (spot-half spot)))
+  (let ((x (label-target-x spot)) (y (label-target-y spot)) (half (label-target-half spot)))
     (flet ((off (x y)
              (multiple-value-call #'pixel-distance x y (nearest-point-in-box box x y))))
-      (if (spot-robot spot)
+      (if (label-target-robot spot)
           (- (off x y) half)
           (destructuring-bind (left top right bottom) box
             (off (clamp (clamp x left right) (- x half) (+ x half))
                  (clamp (clamp y top bottom) (- y half) (+ y half))))))))
 
-(defun unambiguous-p (spot box rivals)
+(defun unambiguous-name-box-p (spot box rivals)
   "True if a name in BOX clearly belongs to SPOT, not to RIVALS, spots with confusable names."
-  (loop with own = (spot-distance spot box)
+  (loop with own = (distance-from-label-target spot box)
         for rival in rivals
-        for robots-p = (and (spot-robot spot) (spot-robot rival))
-        never (< (spot-distance rival box) (+ own (if robots-p +robot-margin+ +thing-margin+)))))
+        for robots-p = (and (label-target-robot spot) (label-target-robot rival))
+        never (< (distance-from-label-target rival box)
+                 (+ own (if robots-p +robot-margin+ +thing-margin+)))))
 
-(defun confusable-spots-near (spot box spots reach)
-  "Return the CONFUSABLE-SPOTS in the index SPOTS to which a name in BOX could seem to belong."
-  (let ((off (+ 1 +robot-margin+ (max 0 (spot-distance spot box)))))
+(defun confusable-label-targets-near (spot box spots reach)
+  "Return the CONFUSABLE-LABEL-TARGETS in the index SPOTS to which a name in BOX could seem to belong."
+  (let ((off (+ 1 +robot-margin+ (max 0 (distance-from-label-target spot box)))))
     (destructuring-bind (left top right bottom) box
-      (confusable-spots
+      (confusable-label-targets
        spot
        (overlapping-items (list (- left off) (- top off) (+ right off) (+ bottom off)) spots)
        reach))))
 
-(defun beside-robot-p (spot rivals)
+(defun too-near-robot-p (spot rivals)
   "True if one of RIVALS is a robot so near to SPOT that there is no room for both names."
   (some (lambda (rival)
-          (and (spot-robot rival) (< (spot-distance rival (spot-box spot)) +robot-margin+)))
+          (and (label-target-robot rival)
+               (< (distance-from-label-target rival (label-target-box spot)) +robot-margin+)))
         rivals))
 
 (define-constant +leader-lengths+ '(10 18 28 40 56 76)
@@ -150,32 +153,35 @@ used.")
         append (loop for turn below 16
                      for angle = (* turn (/ pi 8))
                      collect (destructuring-bind (x y)
-                                 (point-at-distance (spot-x spot) (spot-y spot) angle
-                                                    (+ length (spot-half spot)))
+                                 (point-at-distance (label-target-x spot) (label-target-y spot)
+                                                    angle
+                                                    (+ length (label-target-half spot)))
                                (name-box-at-line-end x y angle width)))))
 
 (defun leader-ends (spot box)
   "Return the two ends of the line from SPOT to BOX, as a list x y x y."
-  (let ((x (spot-x spot)) (y (spot-y spot)))
+  (let ((x (label-target-x spot)) (y (label-target-y spot)))
     (multiple-value-bind (to-x to-y) (nearest-point-in-box box x y)
-      (append (point-at-distance x y (arctangent (- to-y y) (- to-x x)) (spot-half spot))
+      (append (point-at-distance x y (arctangent (- to-y y) (- to-x x)) (label-target-half spot))
               (list to-x to-y)))))
 
 (defun robots-to-avoid (spot rivals)
   "Return the images of the robots in RIVALS that a line from SPOT must not cross. If SPOT is a
 thing inside the ring of a robot, its line may cross this ring."
   (loop for rival in rivals
-        when (and (spot-robot rival)
-                  (or (spot-robot spot) (<= 2 (spot-distance rival (spot-box spot)))))
-          collect (spot-robot rival)))
+        when (and (label-target-robot rival)
+                  (or (label-target-robot spot)
+                      (<= 2 (distance-from-label-target rival (label-target-box spot)))))
+          collect (label-target-robot rival)))
 
-(defun spot-blocked-p (spot at taken)
+(defun leader-piece-blocked-p (spot at taken)
   "True if the box AT, a piece of a line from SPOT, is outside SPOT and overlaps a box of the index
 TAKEN. If SPOT is a thing, boxes that overlap SPOT are ignored."
-  (let ((own (spot-box spot)))
+  (let ((own (label-target-box spot)))
     (and (not (overlap-p at own))
          (find-overlapping-item at taken (lambda (other)
-                                           (or (spot-robot spot) (not (overlap-p other own))))))))
+                                           (or (label-target-robot spot)
+                                               (not (overlap-p other own))))))))
 
 (defun leader-clear-p (spot box taken rivals)
   "True if the line from SPOT to BOX crosses no ring of a robot in RIVALS, and no box of the index
@@ -185,7 +191,7 @@ TAKEN except the box of SPOT."
       (loop for step from 0 to 8
             for at-x = (+ x (* step 1/8 (- to-x x))) and at-y = (+ y (* step 1/8 (- to-y y)))
             always (and (every (lambda (robot) (< 2 (distance-from-ring robot at-x at-y))) robots)
-                        (not (spot-blocked-p spot (box-around at-x at-y 1) taken)))))))
+                        (not (leader-piece-blocked-p spot (box-around at-x at-y 1) taken)))))))
 
 (defun leader-box (snapshot layers spot width taken rivals)
   "Return the box at the end of a line where the name of SPOT, WIDTH pixels wide, hides least, or
@@ -194,7 +200,7 @@ NIL. The line may cross something only if SPOT is a robot and every line does."
     (flet ((best (own-p)
              (best-box snapshot layers boxes taken :anywhere-p t :own-p own-p)))
       (or (best (lambda (box) (leader-clear-p spot box taken rivals)))
-          (and (spot-robot spot) (best (constantly t)))))))
+          (and (label-target-robot spot) (best (constantly t)))))))
 
 ;;; Writing names.
 
@@ -204,12 +210,12 @@ NIL. The line may cross something only if SPOT is a robot and every line does."
   (destructuring-bind (left top right bottom) box
     (list (- left by) top (+ right by) bottom)))
 
-(defun marked-boxes (snapshot layers)
+(defun layer-mark-boxes (snapshot layers)
   "Return the boxes of the numbers and rings that LAYERS draw of SNAPSHOT."
-  (loop for (layer . arguments) in (all-shown snapshot layers)
+  (loop for (layer . arguments) in (all-shown-layers snapshot layers)
         when (%layer-boxes layer) append (apply (%layer-boxes layer) arguments)))
 
-(defun boxes-of-robots (robots)
+(defun camera-line-boxes (robots)
   (loop for robot in robots
         append (loop for (x y to-x to-y)
                        in (camera-lines robot (ring-radius robot robots))
@@ -225,56 +231,59 @@ NIL. The line may cross something only if SPOT is a robot and every line does."
 
 ;;; From here on SPOTS is a box index.
 
-(defconstant +reach-of-names+ 100
+(defconstant +name-confusion-margin+ 100
   "The distance from a name up to which spots with confusable names are searched, in pixels.")
 
-(defun reach-of-name (spot width)
+(defun name-confusion-distance (spot width)
   "Return the distance from SPOT up to which spots with confusable names are searched, in pixels.
 The name of SPOT is WIDTH pixels wide."
-  (+ width (spot-half spot) +reach-of-names+))
+  (+ width (label-target-half spot) +name-confusion-margin+))
 
-(defun box-beside-spot (snapshot layers spot width taken marks spots)
+(defun name-box-beside-label-target (snapshot layers spot width taken marks spots)
   "Return the box beside SPOT where the name of SPOT, WIDTH pixels wide, is unambiguous and hides
 least. Return NIL if there is no such box."
   (flet ((own-p (box)
-           (unambiguous-p spot box
-                          (confusable-spots-near spot box spots (reach-of-name spot width)))))
+           (unambiguous-name-box-p spot box
+                                   (confusable-label-targets-near spot box spots (name-confusion-distance spot width)))))
     (best-box snapshot layers
-              (boxes-beside (spot-x spot) (spot-y spot) (spot-half spot) width marks)
-              taken :anywhere-p (and (spot-robot spot) t) :own-p #'own-p)))
+              (boxes-beside (label-target-x spot) (label-target-y spot) (label-target-half spot)
+                            width marks)
+              taken :anywhere-p (and (label-target-robot spot) t) :own-p #'own-p)))
 
-(defun on-other-spot-p (spot spots)
-  (and (find-overlapping-item (spot-box spot) spots (lambda (other) (not (eq other spot)))) t))
+(defun on-other-label-target-p (spot spots)
+  (and (find-overlapping-item (label-target-box spot) spots (lambda (other) (not (eq other spot))))
+       t))
 
 (defun name-box (snapshot layers spot width taken marks spots robots)
   "Return two values: the box, WIDTH pixels wide, for the name of SPOT, or NIL; and true if a line
 must lead to the box. ROBOTS is a list of the spots of robots in the index SPOTS."
-  (let ((near (box-beside-spot snapshot layers spot width taken marks spots)))
+  (let ((near (name-box-beside-label-target snapshot layers spot width taken marks spots)))
     (if near
         (values near nil)
-        (let ((rivals (confusable-spots spot robots (reach-of-name spot width))))
-          (when (or (spot-robot spot) (on-other-spot-p spot spots) (beside-robot-p spot rivals))
+        (let ((rivals (confusable-label-targets spot robots (name-confusion-distance spot width))))
+          (when (or (label-target-robot spot) (on-other-label-target-p spot spots)
+                    (too-near-robot-p spot rivals))
             (values (leader-box snapshot layers spot width taken rivals) t))))))
 
 (defun draw-names (canvas snapshot layers &optional boxes)
   "Write the names of robots and things where they overlap neither BOXES nor what LAYERS draw. If
 there is no room beside a robot, its name is at the end of a line. The same holds for a thing that
 overlaps or touches another spot."
-  (let* ((spots (named-spots snapshot)) (robots (snapshot-robots snapshot))
+  (let* ((spots (label-targets snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
-         (marks (append boxes (marked-boxes snapshot layers)))
-         (taken (index-boxes (append marks (boxes-of-robots robots)
+         (marks (append boxes (layer-mark-boxes snapshot layers)))
+         (taken (index-boxes (append marks (camera-line-boxes robots)
                                      (loop for spot in spots
-                                           collect (widen-box (spot-box spot) 1)))))
+                                           collect (widen-box (label-target-box spot) 1)))))
          (marks (index-boxes marks))
-         (index (index-boxes (mapcar #'spot-box spots) spots))
-         (robot-spots (remove nil spots :key #'spot-robot)))
+         (index (index-boxes (mapcar #'label-target-box spots) spots))
+         (robot-spots (remove nil spots :key #'label-target-robot)))
     (dolist (spot spots)
       (multiple-value-bind (box led-p)
-          (name-box snapshot layers spot (+ 2 (* per-character (length (spot-name spot))))
+          (name-box snapshot layers spot (+ 2 (* per-character (length (label-target-name spot))))
                     taken marks index robot-spots)
         (when box
           (let ((box (widen-box box +name-gap+))) (add-box box box taken))
           (when led-p
             (with-halo (black*) (draw-segments canvas draw-gcontext* (leader-ends spot box))))
-          (write-name canvas (spot-name spot) box))))))
+          (write-name canvas (label-target-name spot) box))))))

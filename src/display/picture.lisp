@@ -135,7 +135,7 @@ needed but not installed."
   (if (pt-p point) (list (pt-x point) (pt-y point)) point))
 
 (defun point-in-pixels (point)
-  (pixels-of (coordinates-of point)))
+  (points-to-pixels (coordinates-of point)))
 
 (defun draw-ways-on-map (canvas ways)
   (draw-way-lines canvas (loop for way in ways for position from 0
@@ -162,7 +162,7 @@ way")
   (destructuring-bind (x y) (coordinates-of point)
     (and (<= 0 x (map-width map)) (<= 0 y (map-height map)))))
 
-(defun check-ways-on (map ways)
+(defun check-ways-on-map (map ways)
   (dolist (way ways)
     (dolist (point way)
       (unless (point-on-map-p point map)
@@ -190,7 +190,7 @@ way")
         (make-snapshot :map map))))
 
 (defun way-picture-text (snapshot ways &rest look &key layers &allow-other-keys)
-  (apply #'framed-text snapshot
+  (apply #'framed-picture-svg snapshot
          (lambda (canvas)
            (draw-terrain canvas (snapshot-map snapshot) :layers layers)
            (draw-ways-on-map canvas ways)
@@ -209,7 +209,7 @@ rsvg-convert is needed but not installed."
   (check-ways ways)
   (check-map-options 'save-way-picture :title title :layers layers :scale scale)
   (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))
-    (check-ways-on map ways)
+    (check-ways-on-map map ways)
     (save-svg (with-broken-graphics-reported
                 (way-picture-text (snapshot-of-map map) ways
                                   :layers layers :in-color in-color :scale scale

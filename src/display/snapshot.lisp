@@ -162,7 +162,7 @@ so that one pass finds the old image of each thing."
   (cond ((thing-p denotation) (image-of-thing denotation))
         ((place-p denotation) (princ-to-string (place-type-name (place-type denotation))))))
 
-(defun place-of-denotation (denotation)
+(defun denotation-coordinates (denotation)
   "Return the coordinates of DENOTATION, a thing or a place, as a list (x y), or NIL for NIL."
   (cond ((thing-p denotation) (multiple-value-list (thing-position denotation)))
         ((place-p denotation)
@@ -171,8 +171,8 @@ so that one pass finds the old image of each thing."
 
 (defun image-of-designator (designator)
   (make-designator-image
-   :x (first (place-of-denotation (designator-denotation designator)))
-   :y (second (place-of-denotation (designator-denotation designator)))
+   :x (first (denotation-coordinates (designator-denotation designator)))
+   :y (second (denotation-coordinates (designator-denotation designator)))
    :number (designator-number designator) :type (designator-type designator)
    :angle (designator-angle designator) :distance (designator-distance designator)
    :denotation (image-of-denotation (designator-denotation designator))))

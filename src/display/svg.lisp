@@ -3,7 +3,7 @@
 (in-package :ars-magna.canvas)
 
 (export '(svg-canvas svg-stream call-with-svg with-svg write-svg number-text write-number
-          write-text))
+          write-escaped-text))
 
 ;;; Elements are written as they are drawn, numbers with at most two decimals. What is drawn with
 ;;; clipping is collected first. It gets a clipping element only if it reaches beyond its box.
@@ -75,21 +75,21 @@
   (write-svg canvas "/>
 "))
 
-(defun write-paint (canvas gcontext fill-p)
+(defun write-shape-element-end (canvas gcontext fill-p)
   "Write the end of an element that is filled if FILL-P, else outlined."
   (cond (fill-p (write-color canvas gcontext "fill")
                 (write-svg canvas "/>
 "))
         (t (write-stroke canvas gcontext))))
 
-(defun write-text (text stream)
+(defun write-escaped-text (text stream)
   "Write TEXT to STREAM with the special characters of SVG escaped."
   (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
 (defun write-text-element-end (canvas gcontext string)
   (write-color canvas gcontext "fill")
   (write-svg canvas ">")
-  (write-text string (svg-stream canvas))
+  (write-escaped-text string (svg-stream canvas))
   (write-svg canvas "</text>
 "))
 
@@ -124,7 +124,7 @@
                      (reach x y width height)
                      (write-svg canvas "M" x " " y "h" width "v" height "h" (- width) "z"))
                 finally (write-svg canvas "\"")))))
-  (write-paint canvas gcontext fill-p))
+  (write-shape-element-end canvas gcontext fill-p))
 
 (defun write-arc-start (canvas x y width height start extent fill-p)
   "Write the beginning of a path element for an arc of less than a full turn."
@@ -153,7 +153,7 @@
            (write-ellipse canvas x y width height pen))
           (t (extend-svg-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen))
              (write-arc-start canvas x y width height start extent fill-p))))
-  (write-paint canvas gcontext fill-p))
+  (write-shape-element-end canvas gcontext fill-p))
 
 (defun write-points (canvas gcontext numbers shift)
   "Write NUMBERS, a list x y x y ..., as x,y x,y ... with SHIFT added to each coordinate."
@@ -167,7 +167,7 @@
   (write-svg canvas (if fill-p "<polygon points=\"" "<polyline points=\""))
   (write-points canvas gcontext (coerce points 'list) (if fill-p 0 1/2))
   (write-svg canvas "\"")
-  (write-paint canvas gcontext fill-p))
+  (write-shape-element-end canvas gcontext fill-p))
 
 (defmethod paint-segments ((canvas svg-canvas) gcontext segments)
   (write-svg canvas "<path d=\"")
@@ -239,7 +239,7 @@ top right bottom) of what it has drawn."
 
 (defmethod call-with-subject (function (canvas svg-canvas) subject)
   (write-svg canvas "<g><title>")
-  (write-text (subject-title subject) (svg-stream canvas))
+  (write-escaped-text (subject-title subject) (svg-stream canvas))
   (write-svg canvas "</title>
 ")
   (multiple-value-prog1 (funcall function)

@@ -67,7 +67,7 @@ FUNCTION succeeds. Otherwise an error message is queued, and the caller must dra
   (make-wall-look (wall-color (wall-shade parameter) (material-hue material))
              (material-texture material)))
 
-(defun wall-looks (map)
+(defun wall-look-function (map)
   "Return a function from the index of a wall cell of MAP to the look of the wall. The look depends
 on substance and parameter. On a display without colours it is plain black."
   (let ((materials (materials-of map)) (known (make-hash-table :test #'eql))
@@ -87,7 +87,7 @@ and BOTTOM are the first ones after it."
   (left 0 :type fixnum) (right 0 :type fixnum) (top 0 :type fixnum) (bottom 0 :type fixnum)
   (look nil :type wall-look))
 
-(defun clip-window (map left top right bottom)
+(defun clip-map-part (map left top right bottom)
   "Return the part of MAP between the given columns and rows as a list (left top right bottom).
 RIGHT and BOTTOM are the first column and row after the part. NIL means the edge of MAP."
   (flet ((within (value limit) (max 0 (min value limit))))
@@ -110,7 +110,7 @@ RIGHT and BOTTOM are the first column and row after the part. NIL means the edge
 (defun wall-runs (map window)
   "Return rectangles that together cover all walls of MAP within WINDOW."
   (let ((above (make-array (map-width map) :initial-element nil)) (runs '())
-        (looks (wall-looks map)))
+        (looks (wall-look-function map)))
     (loop for y from (second window) below (fourth window)
           do (dolist (run (row-runs map window y looks))
                (let ((old (svref above (wall-run-left run))))
@@ -140,7 +140,7 @@ TILE pixels wide; without TILE, leave out the texture."
     (with-color (mix-colors (wall-look-color look) white* 6/10)
       (draw-texture canvas draw-gcontext* (wall-look-texture look) rectangles tile))))
 
-(defun wall-pixels (from to)
+(defun wall-width-in-pixels (from to)
   "Return the width in pixels of a wall from column or row FROM to TO: at least 1, to be visible."
   (max 1 (to-pixels (- to from))))
 
@@ -152,8 +152,8 @@ TILE pixels wide; without TILE, leave out the texture."
                       (first (push (list (wall-run-look run)) lists)))))
         (setf (rest list)
               (list* (to-pixels (wall-run-left run)) (to-pixels (wall-run-top run))
-                     (wall-pixels (wall-run-left run) (wall-run-right run))
-                     (wall-pixels (wall-run-top run) (wall-run-bottom run))
+                     (wall-width-in-pixels (wall-run-left run) (wall-run-right run))
+                     (wall-width-in-pixels (wall-run-top run) (wall-run-bottom run))
                      (rest list)))))))
 
 (defun draw-walls (canvas map window)
@@ -208,17 +208,17 @@ TILE pixels wide; without TILE, leave out the texture."
     (with-gcontext (draw-gcontext* :foreground (if in-color* +grid-ink+ black*) :dashes '(1 3)
                                    :line-style (if in-color* :solid :dash))
       (draw-segments canvas draw-gcontext*
-                     (pixels-of (append (loop for x in (marks-between left right 16)
-                                              append (list x top x bottom))
-                                        (loop for y in (marks-between top bottom 16)
-                                              append (list left y right y))))))))
+                     (points-to-pixels (append (loop for x in (marks-between left right 16)
+                                                     append (list x top x bottom))
+                                               (loop for y in (marks-between top bottom 16)
+                                                     append (list left y right y))))))))
 
 (defun draw-terrain (canvas map &key left top right bottom (layers '(:places)))
   "Draw the walls of MAP on CANVAS, with GRAPHICS-SCALE* pixels per cell (manual B), and the layers
 in LAYERS that are drawn below and on walls, such as :GRID and :PLACES. Walls are black on canvases
 without colours. Otherwise the grey of a wall shows its parameter; its tint and texture show its
 substance. LEFT, TOP, RIGHT and BOTTOM, in cells, limit the part to draw, by default the whole MAP."
-  (let ((window (clip-window map left top right bottom)))
+  (let ((window (clip-map-part map left top right bottom)))
     (flet ((draw-at (depth)
              (dolist (layer (layers-at-depth depth layers))
                (funcall (%layer-draw layer) canvas map window))))

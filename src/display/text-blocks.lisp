@@ -30,7 +30,7 @@ ROWS blocks of WIDE x HIGH cells each."
   (let ((x (floor (robot-x robot))) (y (floor (robot-y robot))))
     (list (- x radius) (- y radius) (+ x radius 1) (+ y radius 1))))
 
-(defun least-block (width height columns rows)
+(defun least-block-size (width height columns rows)
   "Return the least width and height of blocks, in cells, for which at most COLUMNS x ROWS blocks
 cover WIDTH x HEIGHT cells. If ROWS is NIL, the number of rows is unlimited."
   (flet ((fits-p (wide high)
@@ -48,7 +48,7 @@ SNAPSHOT. The view has at most COLUMNS characters a line and at most ROWS lines 
       (multiple-value-bind (left right) (clip-range 0 x1 x2 (map-width map))
         (multiple-value-bind (top bottom) (clip-range 0 y1 y2 (map-height map))
           (multiple-value-bind (wide high)
-              (least-block (- right left) (- bottom top) columns rows)
+              (least-block-size (- right left) (- bottom top) columns rows)
             (make-text-view :snapshot snapshot :left left :top top :wide wide :high high
                             :columns (ceiling (- right left) wide)
                             :rows (ceiling (- bottom top) high))))))))
@@ -96,7 +96,7 @@ kinds.")
 (define-constant +letters+ "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ" :test #'equal
   :documentation "The letters that can stand for kinds of things.")
 
-(defun letters-for (name)
+(defun candidate-letters (name)
   "Return a list of strings of possible letters for things called NAME, the best letters first."
   (list (string-downcase (char name 0))
         (string-upcase (char name 0))
@@ -125,7 +125,7 @@ things choose letters first. If WORLD has more names than letters, some names ar
       (dolist (name names)
         (let ((letter (and (null (gethash name letters))
                            (find-if (lambda (char) (member char free))
-                                    (nth rank (letters-for name))))))
+                                    (nth rank (candidate-letters name))))))
           (when letter
             (setf (gethash name letters) letter
                   free (remove letter free))))))))
@@ -174,13 +174,13 @@ character.")
 
 ;;; Robots.
 
-(defun arrow-glyph (angle)
+(defun arrow-character (angle)
   "Return the arrow character whose direction is nearest to ANGLE, in radians."
   (char ">v<^" (mod (round (/ angle (/ pi 2))) 4)))
 
 (defun robot-glyph (robot things)
   "Return the glyph of the image ROBOT. THINGS are images of the things in the same block."
-  (make-glyph :robot (arrow-glyph (robot-image-angle robot))
+  (make-glyph :robot (arrow-character (robot-image-angle robot))
               (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-name robot)
                       (zero-if-tiny (robot-image-x robot)) (zero-if-tiny (robot-image-y robot))
                       (remove-duplicates (loop for image in things

@@ -21,7 +21,7 @@
 (defun sorted-legend (sheet)
   (sort (copy-list (sheet-legend sheet)) #'glyph<))
 
-(defun glyph-always-below-p (glyph)
+(defun glyph-always-below-map-p (glyph)
   (eq :robot (glyph-kind glyph)))
 
 ;;; An item is a pair of its length in characters and its text.
@@ -54,21 +54,22 @@ longer than COLUMNS has its own line."
   (dolist (line lines)
     (format stream "~{~A~^   ~}~%" (mapcar #'cdr line))))
 
-(defun head-items (sheet paint)
+(defun fixed-legend-items (sheet paint)
   "Return the legend items of SHEET that are always below the map."
   (let ((view (sheet-view sheet)))
     (append (when (< 1 (max (view-wide view) (view-high view)))
               (list (text-item (format nil "Each character is ~D x ~D cells."
                                        (view-wide view) (view-high view)))))
-            (glyph-items (remove-if-not #'glyph-always-below-p (sorted-legend sheet)) paint))))
+            (glyph-items (remove-if-not #'glyph-always-below-map-p (sorted-legend sheet)) paint))))
 
-(defun movable-glyphs (sheet)
+(defun movable-legend-glyphs (sheet)
   "Return the glyphs of SHEET whose legend items may be beside the map or below it."
-  (remove-if #'glyph-always-below-p (sorted-legend sheet)))
+  (remove-if #'glyph-always-below-map-p (sorted-legend sheet)))
 
 (defun whole-legend (sheet columns paint)
   "Return the legend of SHEET, as lists of items that make lines of at most COLUMNS characters."
-  (fill-lines (append (head-items sheet paint) (glyph-items (movable-glyphs sheet) paint)) columns))
+  (fill-lines (append (fixed-legend-items sheet paint)
+                      (glyph-items (movable-legend-glyphs sheet) paint)) columns))
 
 ;;; Beside the map.
 
@@ -92,7 +93,7 @@ and those of GLYPHS for which there is no room. The items fit beside the map in 
 
 ;;; Below it.
 
-(defun lines-with-count (head items columns rows)
+(defun abridged-legend-lines (head items columns rows)
   "Return the legend items HEAD and ITEMS as lines of COLUMNS characters, at most ROWS lines unless
 ROWS is NIL. If items have no room, the last line says how many, if it has room for that number."
   (flet ((kept (count &rest more)
@@ -164,9 +165,10 @@ ROWS lines if possible. If ROWS is NIL, the number of lines is unlimited."
                    0
                    (- columns +margin-columns+ (view-columns view) 2))))
     (multiple-value-bind (beside rest)
-        (side-legend (movable-glyphs sheet) side (view-rows view) paint)
+        (side-legend (movable-legend-glyphs sheet) side (view-rows view) paint)
       (write-rows sheet beside paint stream)
-      (write-items (lines-with-count (head-items sheet paint) (glyph-items rest paint) columns left)
+      (write-items (abridged-legend-lines (fixed-legend-items sheet paint) (glyph-items rest paint)
+                                          columns left)
                    stream))))
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
@@ -179,7 +181,7 @@ part of its legend, if possible. Kinds without a thing on the floor keep their l
           for view = (text-view-of-region snapshot region (- columns +margin-columns+)
                                           (and rows (max 1 (- rows 1 lines))))
           for sheet = (sheet-of image view layers letters colored-p)
-          for head = (fill-lines (head-items sheet #'ignore-ink) columns)
+          for head = (fill-lines (fixed-legend-items sheet #'ignore-ink) columns)
           when (or (null rows) (<= (length head) lines) (<= rows (+ 2 lines)))
             return sheet)))
 

@@ -15,7 +15,7 @@
 (defconstant +ray-spacing+ 0.01d0
   "The angle between the rays that find the cells in a field of view, in radians.")
 
-(defun visible-cells (map opaque-p x y angle)
+(defun cells-along-ray (map opaque-p x y angle)
   "Return the indices of the cells of MAP that a camera at X, Y sees in direction ANGLE."
   (let ((indices '()))
     (walk-grid (lambda (index at column)
@@ -30,12 +30,12 @@
   (let* ((width (camera-image-field-of-view camera))
          (count (max 1 (ceiling width +ray-spacing+)))
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
-         (opaque-p (opaque-cells (view-snapshot view))))
+         (opaque-p (opaque-cell-test (view-snapshot view))))
     (remove-duplicates
      (loop for ray to count
-           append (loop for index in (visible-cells (view-map view) opaque-p
-                                                    (robot-image-x robot) (robot-image-y robot)
-                                                    (+ first (* ray (/ width count))))
+           append (loop for index in (cells-along-ray (view-map view) opaque-p
+                                                      (robot-image-x robot) (robot-image-y robot)
+                                                      (+ first (* ray (/ width count))))
                         when (block-of-index view index) collect it)))))
 
 (defun cone-marks (view robot)
@@ -61,7 +61,7 @@
       (loop for i to count
             collect (list (+ x (* dx (/ i count))) (+ y (* dy (/ i count))))))))
 
-(defun planned-marks (view robot)
+(defun planned-way-marks (view robot)
   (let ((glyph (make-glyph :layer #\: (format nil "planned way of ~A" (robot-image-name robot))
                            :cyan)))
     (loop for (from to) on (robot-image-planned-way robot)
@@ -115,7 +115,7 @@ of VIEW, row by row. LEGEND is a list of all glyphs used."
                      (and (char= (glyph-char a) (glyph-char b))
                           (string= (glyph-text a) (glyph-text b)))))))
 
-(defun mark-layer (sheet robot layer)
+(defun add-layer-marks (sheet robot layer)
   (let ((table (make-hash-table)))
     (loop for (number . glyph) in (funcall (%layer-text layer) (sheet-view sheet) robot)
           do (push glyph (gethash number table)))
@@ -128,7 +128,7 @@ NIL if no layer at DEPTH has a glyph in this block."
         for glyphs = (and (eq depth its-depth) (gethash number table))
         when glyphs return (list (first glyphs))))
 
-(defun robots-in (view indices)
+(defun robots-in-cells (view indices)
   (remove-if-not (lambda (robot)
                    (member (map-index (view-map view) (robot-image-x robot) (robot-image-y robot))
                            indices))
@@ -150,7 +150,7 @@ first. INDICES are the cells of the block."
   (let* ((view (sheet-view sheet))
          (map (view-map view))
          (things (loop for index in indices append (gethash index (sheet-things sheet)))))
-    (or (mapcar (lambda (robot) (robot-glyph robot things)) (robots-in view indices))
+    (or (mapcar (lambda (robot) (robot-glyph robot things)) (robots-in-cells view indices))
         (layer-glyphs-at sheet :above number)
         (things-glyphs things (sheet-letters sheet))
         (layer-glyphs-at sheet :below number)
@@ -165,7 +165,7 @@ LETTERS is a value of LETTERS-OF-THING-NAMES. If COLORED-P, walls are told apart
                            :letters letters)))
     (dolist (layer *layers*)
       (when (and (%layer-text layer) (member (%layer-text-name layer) layers))
-        (mark-layer sheet robot layer)))
+        (add-layer-marks sheet robot layer)))
     (setf (sheet-glyphs sheet)
           (coerce (loop for row below (view-rows view)
                         append (loop for column below (view-columns view)

@@ -37,7 +37,7 @@
             (point-along pieces (+ distance (/ +arrow-length+ 2))))
     (list (/ (+ x to-x) 2) (/ (+ y to-y) 2) (arctangent (- to-y y) (- to-x x)))))
 
-(defun free-arrow (pieces distance arrows)
+(defun arrow-without-overlap (pieces distance arrows)
   "Return an arrowhead near DISTANCE along the way of PIECES that overlaps none of ARROWS, or NIL if
 there is no room. Overlaps can occur where a way leads back."
   (loop with room = (* 3/2 +arrow-length+)
@@ -54,7 +54,8 @@ and do not overlap OTHERS. A very short way has none."
          (count (if (< whole +least-way-with-arrow+) 0 (max 1 (round whole +arrow-distance+))))
          (arrows '()))
     (dotimes (index count (reverse arrows))
-      (let ((arrow (free-arrow pieces (* (+ index 1/2) (/ whole count)) (append arrows others))))
+      (let ((arrow (arrow-without-overlap pieces (* (+ index 1/2) (/ whole count))
+                                          (append arrows others))))
         (when arrow (push arrow arrows))))))
 
 (defun draw-way-arrow (canvas x y angle color hollow-p)
@@ -135,7 +136,7 @@ because ways would overlap there.")
         (loop for (x y angle) in (arrows-along points arrows)
               do (push (list x y angle) arrows)
                  (draw-way-arrow canvas x y angle (way-line-color line)
-                                 (hollow-head-p (way-line-position line))))))))
+                                 (hollow-arrowhead-p (way-line-position line))))))))
 
 (defun draw-way-lines (canvas lines)
   "Draw the ways LINES and their jumps, so that no way hides another."
@@ -243,15 +244,15 @@ because ways would overlap there.")
 
 ;;; Planned ways.
 
-(defun robots-with-plans (snapshot)
+(defun robots-with-planned-ways (snapshot)
   (remove-if-not (lambda (robot) (rest (robot-image-planned-way robot)))
                  (snapshot-robots snapshot)))
 
 (defun end-of-planned-way (robot)
   "Return the end of the planned way of ROBOT, a point (x y) in pixels."
-  (pixels-of (first (last (robot-image-planned-way robot)))))
+  (points-to-pixels (first (last (robot-image-planned-way robot)))))
 
-(defun ends-of-planned-ways (robots)
+(defun planned-way-end-boxes (robots)
   "Return the boxes, in pixels, of the rings at the ends of the planned ways of ROBOTS."
   (loop for robot in robots
         collect (destructuring-bind (x y) (end-of-planned-way robot)
@@ -261,7 +262,8 @@ because ways would overlap there.")
   (draw-way-lines canvas
                   (loop for robot in robots
                         for way = (apply #'append (robot-image-planned-way robot))
-                        collect (make-way-line (robot-image-position robot) (list (pixels-of way))
+                        collect (make-way-line (robot-image-position robot)
+                                               (list (points-to-pixels way))
                                                :dashes (layer-dashes :planned-way)
                                                :arrows-p nil)))
   (draw-way-marks canvas

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.display)
 
-(export '(draw-view-margins view-edges *display-opener* *displays-waiter* announce-display))
+(export '(draw-view-margins view-strip-widths *display-opener* *displays-waiter*
+                            open-display-or-report))
 
 ;;; A window shows a part of the map. Numbers and scale bar are in strips along its edges. The map
 ;;; is in view between the strips, so that they hide nothing. A number at the end of a strip is
@@ -11,7 +12,7 @@
 (defconstant +strip-height+ 17 "The height of the strip of numbers, in pixels.")
 (defconstant +scale-bar-strip-height+ 24 "The height of the strip of the scale bar, in pixels.")
 
-(defun view-edges (map layers)
+(defun view-strip-widths (map layers)
   "Return a list of the widths, in pixels, of the strips for coordinates and scale bar at the left,
 top and bottom of a view of MAP. The width is 0 if LAYERS do not show the strip."
   (let ((numbers-p (member :coordinates layers)))
@@ -51,7 +52,7 @@ begins at LEFT and is WIDTH pixels wide."
   "Draw coordinates and scale bar at the edges of a view of MAP, if LAYERS contain :COORDINATES and
 :SCALE-BAR. The view is WIDTH by HEIGHT pixels large and begins LEFT and TOP pixels from the corner
 of MAP. Call this within WITH-CANVAS, with the origin in the corner of MAP."
-  (destructuring-bind (left-edge top-edge bottom-edge) (view-edges map layers)
+  (destructuring-bind (left-edge top-edge bottom-edge) (view-strip-widths map layers)
     (let* ((right (+ left width)) (bottom (- (+ top height) bottom-edge)))
       (when (member :coordinates layers)
         ;; In this order: the first number of a row may reach into the empty corner.
@@ -85,7 +86,7 @@ can be a fork or a trial. Signals MISUSE if no window can be opened: see ars-mag
 (defvar *reported-messages* '()
   "The messages already printed about displays that could not be opened, each printed only once.")
 
-(defun announce-display (robot options)
+(defun open-display-or-report (robot options)
   "Open the window of ROBOT, which SIMULATOR has started. If this fails, print the reason and the
 remedy, but only the first time. Do nothing if the OPTIONS of SIMULATOR have :DISPLAY NIL."
   (when (getf options :display t)
@@ -97,5 +98,5 @@ remedy, but only the first time. Do nothing if the OPTIONS of SIMULATOR have :DI
             (push text *reported-messages*)
             (out text t)))))))
 
-(add-listener *simulator-hooks* announce-display)
+(add-listener *simulator-hooks* open-display-or-report)
 (pushnew 'display *simulator-hook-options*)

@@ -6,7 +6,8 @@ resumed, on all processors and on many machines. Names lparallel.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
         :ars-magna.statistics :ars-magna.run)
   (:import-from :ars-magna.plots
-                #:figure-text #:line-chart #:survival-chart #:difference-chart #:measure-chart
+                #:rounded-number-text #:line-chart #:survival-chart #:difference-chart
+                #:measure-chart
                 #:save-chart #:decimal-exponent #:decimal-text #:strip-trailing-zeros)
   (:import-from :ars-magna.trails #:update-trails #:trails-to-ways #:save-picture-of-ways)
   (:import-from :ars-magna.display

@@ -76,8 +76,8 @@ FiveAM; return true if the check passes."
   (check-rate-arguments 'is-success-rate at-least trials level)
   (check-argument is-success-rate workers (whole-p workers 1 1000)
                   "a number of threads, from 1 to 1000")
-  (let ((check (run-check (make-check experiment condition subject (as-written at-least) trials
-                                      (as-written level) workers))))
+  (let ((check (run-check (make-check experiment condition subject (share-as-double at-least) trials
+                                      (share-as-double level) workers))))
     (cond ((eq :passed (check-verdict check))
            (pass "~A: ~A" (subject-text check) (success-count-text check))
            t)

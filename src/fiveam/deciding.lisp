@@ -57,7 +57,8 @@ rates a check accepts: with the defaults, a rate of 95 % passes with a probabili
 sequences of successes and failures, which takes a second for 5,000 trials. Signals WRONG-ARGUMENT."
   (check-argument pass-probability rate (probability-p rate) "a number from 0 to 1")
   (check-rate-arguments 'pass-probability at-least trials level)
-  (let ((rate (as-written rate)) (at-least (as-written at-least)) (level (as-written level))
+  (let ((rate (share-as-double rate)) (at-least (share-as-double at-least))
+        (level (share-as-double level))
         (odds (vector 1)) (passed 0) (run 0))
     (loop for count from 1 to trials
           do (incf run (reduce #'+ odds))

@@ -6,12 +6,13 @@
 written with FiveAM. Use this package together with FIVEAM.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :fiveam #:pass #:fail)
-  (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval #:as-written)
+  (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval #:share-as-double)
   (:import-from :ars-magna.run #:variables-among)
   (:import-from :ars-magna.experiment
-                #:experiment-from #:find-experiment #:experiment-name #:experiment-conditions
+                #:experiment-from-options #:find-experiment #:experiment-name
+                #:experiment-conditions
                 #:experiment-trials #:experiment-limit #:experiment-package #:warn-of-nested-run
                 #:find-condition #:condition-name
                 #:run-trial-in-worker #:replay-trial #:call-without-output #:call-by-workers
-                #:form-in-package
+                #:form-text-in-package
                 #:result-trial #:result-seed #:result-outcome #:result-reason #:result-error))

@@ -21,8 +21,8 @@ Trials have ROBOTS; PARAMETERS, lists (name value); no noise if CLEAN; and at mo
 
 ;;; An experiment for a form.
 
-(defun experiment-parameters (parameters operator)
-  "Return PARAMETERS, lists (name value), in the form that EXPERIMENT-FROM requires. Errors say that
+(defun convert-parameters (parameters operator)
+  "Return PARAMETERS, lists (name value), in the form that EXPERIMENT-FROM-OPTIONS requires. Errors say that
 PARAMETERS is an argument of OPERATOR."
   (unless (and (proper-list-p parameters)
                (every (lambda (part) (and (proper-list-p part) (= 2 (length part)))) parameters))
@@ -37,20 +37,20 @@ PARAMETERS is an argument of OPERATOR."
     (unless (integerp seed) (reject-argument operator 'seed seed "an integer"))
     (unless (whole-p limit 1)
       (reject-argument operator 'limit limit "a number of ticks from 1 to 1e9"))
-    (let ((experiment (experiment-from operator (string-downcase operator)
-                                       :robots (subject-robots subject)
-                                       :run (subject-function subject)
-                                       :seed seed :limit limit
-                                       :parameters (experiment-parameters
-                                                    (subject-parameters subject)
-                                                                    operator)
-                                       :clean (subject-clean subject))))
+    (let ((experiment (experiment-from-options operator (string-downcase operator)
+                                               :robots (subject-robots subject)
+                                               :run (subject-function subject)
+                                               :seed seed :limit limit
+                                               :parameters (convert-parameters
+                                                            (subject-parameters subject)
+                                                                            operator)
+                                               :clean (subject-clean subject))))
       (setf (experiment-package experiment) (subject-package subject))
       experiment)))
 
 ;;; Expanding the macros.
 
-(defun robot-names (operator robots form)
+(defun parse-robot-names (operator robots form)
   "Return ROBOTS, a name or list of names, as a list. Signals MALFORMED-DEFINITION without a name."
   (let ((names (ensure-list (if (and (consp robots) (eq 'quote (first robots)))
                                 (second robots)
@@ -74,7 +74,7 @@ PARAMETERS is an argument of OPERATOR."
 (defun subject-expansion (operator form robots parameters clean limit)
   "Return a form that makes the subject from these arguments of the macro OPERATOR."
   (warn-of-nested-run form)
-  (let ((names (robot-names operator robots form)))
+  (let ((names (parse-robot-names operator robots form)))
     `(make-subject (lambda ()
                      (declare (special ,@(variables-among names)))
                      ,form)
@@ -174,7 +174,7 @@ REPLAY-TRIAL, and MALFORMED-DEFINITION."
 
 (defun form-text-for-check (form check)
   "Return the text of FORM in the package of CHECK, on one line if it is short."
-  (let* ((text (form-in-package form (experiment-package (check-experiment check))))
+  (let* ((text (form-text-in-package form (experiment-package (check-experiment check))))
          (line (one-line text)))
     (if (< (length line) 90) line text)))
 

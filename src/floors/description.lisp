@@ -86,7 +86,7 @@ FREE; and the MODE."
       (reject-entry file entry "the name of the image, such as floor.pgm"))
     (merge-pathnames (resolve-file-name name) (uiop:pathname-directory-pathname file))))
 
-(defun image-in (file entry)
+(defun readable-image-path (file entry)
   "Return the pathname of the image that ENTRY of FILE names. Signals UNUSABLE-FLOOR."
   (let* ((image (image-path file entry)) (trouble (unusable-file-text image)))
     (when trouble
@@ -123,7 +123,7 @@ FREE; and the MODE."
        :negated-p (boolean-in file (entry "negate"))
        :free free :occupied occupied
        :mode (mode-in file (find-entry "mode" entries))
-       :image (image-in file (entry "image"))))))
+       :image (readable-image-path file (entry "image"))))))
 
 (note-kind-of-file :floor "image:" "it is the description of a map; (import-map FILE) reads it")
 

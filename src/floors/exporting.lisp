@@ -8,7 +8,7 @@
 (define-constant +shades+ #(254 0 205) :test 'equalp
   :documentation "The brightness, from 0 to 255, of pixels for +FREE+, +OCCUPIED+ and +UNKNOWN+.")
 
-(defun number-of-substance (map substance)
+(defun substance-index (map substance)
   "Return the index of SUBSTANCE in MAP, or NIL if no wall has SUBSTANCE. Signals UNKNOWN-NAME."
   (let ((names (map-substance-types map)))
     (or (position substance names :start 1 :test #'same-name-p)
@@ -22,7 +22,7 @@ EXPORT-MAP with UNKNOWN writes as unknown. Signals UNKNOWN-NAME."
   (if (member unknown '(nil :walls))
       (constantly nil)
       (destructuring-bind (name &optional parameter) (ensure-list unknown)
-        (let ((wanted (number-of-substance map name)))
+        (let ((wanted (substance-index map name)))
           (lambda (number value)
             (and (eql number wanted)
                  (or (null parameter) (= value parameter))))))))
@@ -49,7 +49,7 @@ EXPORT-MAP with UNKNOWN writes as unknown. Signals UNKNOWN-NAME."
               (code-char (aref +shades+ (aref (grid-cells grid) (+ x (* y (grid-width grid))))))))
       (write-string row out))))
 
-(defun yaml-file-name (name)
+(defun yaml-quoted-file-name (name)
   "Return the file name NAME as a value in YAML, in quotes only if YAML requires quotes."
   (if (and (alpha-char-p (char name 0))
            (every (lambda (char) (or (alphanumericp char) (find char "._-"))) name))
@@ -68,7 +68,8 @@ EXPORT-MAP with UNKNOWN writes as unknown. Signals UNKNOWN-NAME."
   (destructuring-bind (size &rest origin) (map-frame map)
     (format out "image: ~A~%mode: trinary~%resolution: ~A~%origin: [~{~A~^, ~}]~%negate: 0~%~
                  occupied_thresh: 0.65~%free_thresh: 0.196~%"
-            (yaml-file-name image) (decimal-notation size) (mapcar #'decimal-notation origin))))
+            (yaml-quoted-file-name image) (decimal-notation size) (mapcar #'decimal-notation
+                                                                          origin))))
 
 (defun write-floor-file (file format function &key (check #'identity))
   "Call CALL-REPLACING-FILE. Signals UNUSABLE-FLOOR if FILE cannot be written."
@@ -100,7 +101,7 @@ NIL if FILE is no valid description."
    (let ((entries (read-entries file (file-text file))))
      (resolve-link (image-path file (required-entry file "image" entries))))))
 
-(defun unused-name-p (path)
+(defun missing-or-empty-file-p (path)
   "True if the file PATH does not exist or is empty."
   (let ((there (probe-file path)))
     (or (null there)
@@ -113,8 +114,8 @@ describe IMAGE, or because IMAGE is no image."
     (flet ((reject (file what)
              (reject-floor file nil "the file is not ~A, and is left unchanged. Give another name, ~
                                      or remove the file" what)))
-      (cond ((unused-name-p path)
-             (unless (unused-name-p image)
+      (cond ((missing-or-empty-file-p path)
+             (unless (missing-or-empty-file-p image)
                (reject image (format nil "the image of ~A" (native-name path)))))
             ((null named) (reject path "the description of a map"))
             ((not (equal named (resolve-link image)))

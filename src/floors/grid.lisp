@@ -195,8 +195,8 @@ without a path. REACHED has for each row how many of its cells were tried."
                (make-number-vector (runs-count rows)) (make-number-vector (runs-count columns))
                (make-number-vector (runs-count rows)) (make-number-vector (runs-count rows) 0)))
 
-(declaim (inline tie-at))
-(defun tie-at (cover row place)
+(declaim (inline edge-column-at))
+(defun edge-column-at (cover row place)
   "Return the column that shares the cell at PLACE of ROW, or -1 if the cell is not needed."
   (declare (type fixnum row place))
   (let* ((rows (cover-rows cover))
@@ -206,11 +206,11 @@ without a path. REACHED has for each row how many of its cells were tried."
         (aref (runs-of (cover-columns cover)) index)
         -1)))
 
-(defmacro do-ties ((column cover row) &body body)
+(defmacro do-edge-columns ((column cover row) &body body)
   "Run BODY with COLUMN bound to each column that shares a needed cell with ROW."
   (with-gensyms (place)
     `(dotimes (,place (aref (runs-lengths (cover-rows ,cover)) ,row))
-       (let ((,column (tie-at ,cover ,row ,place)))
+       (let ((,column (edge-column-at ,cover ,row ,place)))
          (unless (minusp ,column) ,@body)))))
 
 (defun find-layers (cover)
@@ -230,14 +230,14 @@ without a path. REACHED has for each row how many of its cells were tried."
       (loop for next of-type fixnum from 0
             while (< next end)
             do (let ((row (aref queue next)))
-                 (do-ties (column cover row)
+                 (do-edge-columns (column cover row)
                    (let ((mate (aref (cover-column-mate cover) column)))
                      (cond ((minusp mate) (setf found t))
                            ((minusp (aref layer mate))
                             (enqueue mate (1+ (aref layer row))))))))))
     found))
 
-(defun next-tie (cover row)
+(defun next-edge-column (cover row)
   "Return the next column that ROW has not tried in this round. The column must have no mate, or a
 mate in the next layer. Return NIL if there is no such column."
   (declare #.*hot* (type fixnum row))
@@ -245,7 +245,7 @@ mate in the next layer. Return NIL if there is no such column."
         (length (aref (runs-lengths (cover-rows cover)) row)))
     (declare (type numbers reached layer))
     (loop while (< (aref reached row) length)
-          do (let ((column (tie-at cover row (aref reached row))))
+          do (let ((column (edge-column-at cover row (aref reached row))))
                (incf (aref reached row))
                (unless (minusp column)
                  (let ((mate (aref (cover-column-mate cover) column)))
@@ -257,7 +257,7 @@ mate in the next layer. Return NIL if there is no such column."
 Pair each row of the path with its column on the path, so that some rows change their mates."
   (let ((way (list (cons row nil))) (column-mate (cover-column-mate cover)) (done nil))
     (loop until (or done (null way))
-          do (let ((column (next-tie cover (car (first way)))))
+          do (let ((column (next-edge-column cover (car (first way)))))
                (cond ((null column) (pop way))
                      (t (setf (cdr (first way)) column)
                         (if (minusp (aref column-mate column))
@@ -281,7 +281,7 @@ Pair each row of the path with its column on the path, so that some rows change 
                            :element-type 'bit :initial-element 0)))
     (dotimes (row (runs-count (cover-rows cover)) taken)
       (unless (minusp (aref (cover-layer cover) row))
-        (do-ties (column cover row)
+        (do-edge-columns (column cover row)
           (setf (sbit taken column) 1))))))
 
 (defun fewest-lines (grid needed allowed)

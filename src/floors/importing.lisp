@@ -51,7 +51,7 @@ three double-floats. The point may be outside MAP. Signals WRONG-ARGUMENT and UN
 (defun check-option (option test value expected)
   (unless test (reject-argument 'import-map option value expected)))
 
-(defun plain-number (value)
+(defun whole-as-integer (value)
   (if (= value (round value)) (round value) value))
 
 (defun substance-option-p (value)
@@ -59,7 +59,7 @@ three double-floats. The point may be outside MAP. Signals WRONG-ARGUMENT and UN
   (or (symbolp value)
       (and (proper-list-p value) (first value) (symbolp (first value))
            (or (null (rest value))
-               (and (= 2 (length value)) (quantity-p (second value)))))))
+               (and (= 2 (length value)) (bounded-number-p (second value)))))))
 
 (defun wall-substance (option value)
   "Return a list (substance parameter) for VALUE of OPTION. Signals UNKNOWN-NAME."
@@ -68,7 +68,7 @@ three double-floats. The point may be outside MAP. Signals WRONG-ARGUMENT and UN
   (destructuring-bind (name &optional (parameter nil given)) (ensure-list value)
     (let ((substance (find-substance name)))
       (list (substance-name substance)
-            (if given parameter (plain-number (substance-parameter substance)))))))
+            (if given parameter (whole-as-integer (substance-parameter substance)))))))
 
 (defun map-name-for (name file)
   "Return the name of the map from FILE: the symbol NAME or, if NAME is NIL, a symbol of the current

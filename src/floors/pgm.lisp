@@ -16,14 +16,14 @@
   (white 255 :type (integer 1 65535) :read-only t)
   (samples (make-array 0 :element-type '(unsigned-byte 16)) :type samples :read-only t))
 
-(defstruct (input (:constructor make-input (file octets)) (:copier nil))
+(defstruct (image-input (:constructor make-image-input (file octets)) (:copier nil))
   "The OCTETS of FILE. The octets before POSITION have been read."
   (file nil :type pathname :read-only t)
   (octets (make-array 0 :element-type '(unsigned-byte 8)) :type octets :read-only t)
   (position 0 :type fixnum))
 
 (defun reject-image (input control &rest arguments)
-  (reject-floor (input-file input) nil "~?" control arguments))
+  (reject-floor (image-input-file input) nil "~?" control arguments))
 
 (defparameter *conversion-command* "convert floor.png -colorspace gray -depth 8 floor.pgm"
   "A shell command that converts an image into a PGM image, which IMPORT-MAP reads.")
@@ -64,7 +64,8 @@
 
 (defun skip-blanks (input)
   "Move the position of INPUT to the next word, past blanks and comments."
-  (let* ((octets (input-octets input)) (end (length octets)) (position (input-position input)))
+  (let* ((octets (image-input-octets input)) (end (length octets))
+         (position (image-input-position input)))
     (declare (type octets octets) (type fixnum end position))
     (loop while (< position end)
           do (let ((octet (aref octets position)))
@@ -72,29 +73,29 @@
                      ((= octet 35)
                       (setf position (or (position 10 octets :start position) end)))
                      (t (return)))))
-    (setf (input-position input) position)))
+    (setf (image-input-position input) position)))
 
 (defun next-number (input what)
   "Return the next number in INPUT, of at most 9 digits. WHAT is the name of the number in errors."
   (skip-blanks input)
-  (let ((octets (input-octets input)) (start (input-position input)) (number 0))
+  (let ((octets (image-input-octets input)) (start (image-input-position input)) (number 0))
     (declare (type octets octets) (type fixnum start) (type (unsigned-byte 32) number))
     (loop for position of-type fixnum from start below (min (length octets) (+ start 10))
           for digit of-type fixnum = (- (aref octets position) 48)
           while (and (<= 0 digit 9) (< position (+ start 9)))
           do (setf number (+ (* 10 number) digit))
-             (setf (input-position input) (1+ position)))
-    (when (and (= 9 (- (input-position input) start))
-               (< (input-position input) (length octets))
-               (digit-char-p (code-char (aref octets (input-position input)))))
+             (setf (image-input-position input) (1+ position)))
+    (when (and (= 9 (- (image-input-position input) start))
+               (< (image-input-position input) (length octets))
+               (digit-char-p (code-char (aref octets (image-input-position input)))))
       (reject-image input "at byte ~D of the image, ~A has more than 9 digits; save an image of a ~
                            size that a map can have" start what))
-    (when (or (= start (input-position input))
-              (and (< (input-position input) (length octets))
-                   (not (blank-octet-p (aref octets (input-position input))))
-                   (/= 35 (aref octets (input-position input)))))
+    (when (or (= start (image-input-position input))
+              (and (< (image-input-position input) (length octets))
+                   (not (blank-octet-p (aref octets (image-input-position input))))
+                   (/= 35 (aref octets (image-input-position input)))))
       (reject-image input "the image is damaged: at byte ~D there is no number that could be ~A; ~
-                           save it again as PGM" (input-position input) what))
+                           save it again as PGM" (image-input-position input) what))
     number))
 
 ;;; The pixels.
@@ -109,34 +110,34 @@
   (let ((samples (make-array count :element-type '(unsigned-byte 16))))
     (dotimes (index count)
       (skip-blanks input)
-      (when (= (input-position input) (length (input-octets input)))
+      (when (= (image-input-position input) (length (image-input-octets input)))
         (reject-image input "the image has only ~D of the ~D values that its header announces; ~
                              save it again" index count))
       (let ((sample (next-number input "a value")))
         (check-sample input sample white)
         (setf (aref samples index) sample)))
     (skip-blanks input)
-    (unless (= (input-position input) (length (input-octets input)))
+    (unless (= (image-input-position input) (length (image-input-octets input)))
       (reject-image input "the image continues after the ~D values that its header announces; save ~
                            only one image in the file" count))
     samples))
 
 (defun check-octets-left (input needed)
   "Signal UNUSABLE-FLOOR unless exactly NEEDED octets are left in INPUT, or one more, a line end."
-  (let* ((end (length (input-octets input))) (left (- end (input-position input))))
+  (let* ((end (length (image-input-octets input))) (left (- end (image-input-position input))))
     (unless (or (= left needed)
-                (and (= left (1+ needed)) (= 10 (aref (input-octets input) (1- end)))))
+                (and (= left (1+ needed)) (= 10 (aref (image-input-octets input) (1- end)))))
       (reject-image input "the header of the image announces ~D bytes of pixels, but ~D follow; ~
                            copy or save the image again, as bytes and not as text" needed left))))
 
 (defun read-binary-samples (input count white)
   "Return a vector of the next COUNT values of INPUT, each at most WHITE. A value is a byte or, if
 WHITE is above 255, a pair of bytes."
-  (incf (input-position input))
+  (incf (image-input-position input))
   (let ((wide (< 255 white)))
     (check-octets-left input (if wide (* 2 count) count))
     (let ((samples (make-array count :element-type '(unsigned-byte 16)))
-          (octets (input-octets input)) (start (input-position input)))
+          (octets (image-input-octets input)) (start (image-input-position input)))
       (declare (type octets octets) (type fixnum start count))
       (if wide
           (dotimes (index count)
@@ -149,13 +150,13 @@ WHITE is above 255, a pair of bytes."
 
 (defun pgm-kind (input)
   "Return 2 or 5 if INPUT begins with P2 or P5, else NIL."
-  (let ((octets (input-octets input)))
+  (let ((octets (image-input-octets input)))
     (and (< 2 (length octets)) (= 80 (aref octets 0)) (find (aref octets 1) #(50 53))
          (- (aref octets 1) 48))))
 
 (defun read-pgm (input limit)
   "Return the PGM image in INPUT, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
-  (setf (input-position input) 2)
+  (setf (image-input-position input) 2)
   (let ((width (next-number input "the width")) (height (next-number input "the height")))
     (check-image-size input width height limit)
     (let ((white (next-number input "the greatest value")) (count (* width height)))

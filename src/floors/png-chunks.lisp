@@ -15,7 +15,7 @@
   "The chunks of a PNG file: WIDTH by HEIGHT pixels with CHANNELS of DEPTH bits. If PALETTE-P is
 true, the only channel is an index in PALETTE, which has three octets for each colour. TRANSPARENCY
 is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
-  (input nil :type input :read-only t)
+  (input nil :type image-input :read-only t)
   (width 1 :type (integer 1) :read-only t)
   (height 1 :type (integer 1) :read-only t)
   (depth 8 :type (integer 1 16) :read-only t)
@@ -26,7 +26,7 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
   (pixels (make-array 0 :element-type '(unsigned-byte 8)) :type octets))
 
 (defun png-begins-p (input)
-  (let ((octets (input-octets input)))
+  (let ((octets (image-input-octets input)))
     (and (< 8 (length octets)) (equalp +png-signature+ (subseq octets 0 8)))))
 
 (defun reject-png (input control &rest arguments)
@@ -35,7 +35,7 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
                        the .yaml file"
                 control arguments *conversion-command*))
 
-(defun reject-damaged (input control &rest arguments)
+(defun reject-damaged-png (input control &rest arguments)
   "Signal UNUSABLE-FLOOR with the message that the PNG file INPUT is damaged."
   (reject-image input "the image is damaged: ~?; copy or save it again" control arguments))
 
@@ -79,15 +79,15 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
 
 (defun next-chunk (input)
   "Return the name of the next chunk in INPUT, and the start and end of its content."
-  (let* ((octets (input-octets input)) (start (+ 8 (input-position input)))
+  (let* ((octets (image-input-octets input)) (start (+ 8 (image-input-position input)))
          (end (and (<= start (length octets)) (+ start (number-at octets (- start 8))))))
     (unless (and end (<= (+ end 4) (length octets)))
-      (reject-damaged input "the file has ~D bytes, and ends before its last chunk, IEND"
-                      (length octets)))
+      (reject-damaged-png input "the file has ~D bytes, and ends before its last chunk, IEND"
+                          (length octets)))
     (let ((name (chunk-name octets (- start 4))))
       (unless (and name (= (number-at octets end) (crc-32 octets (- start 4) end)))
-        (reject-damaged input "the chunk at byte ~D has a wrong name or check sum" (- start 8)))
-      (setf (input-position input) (+ end 4))
+        (reject-damaged-png input "the chunk at byte ~D has a wrong name or check sum" (- start 8)))
+      (setf (image-input-position input) (+ end 4))
       (values name start end))))
 
 ;;; The head.
@@ -102,8 +102,8 @@ grey; 2 and 6 are red, green and blue; 3 is a palette. The last channel of 4 and
   (when (= 1 interlace)
     (reject-png input "the image is interlaced (Adam7), which is not supported"))
   (unless (= 0 compression filter interlace)
-    (reject-damaged input "PNG has no compression ~D, filter ~D and interlace ~D"
-                    compression filter interlace)))
+    (reject-damaged-png input "PNG has no compression ~D, filter ~D and interlace ~D"
+                        compression filter interlace)))
 
 (defun png-from-header (input octets limit)
   "Return a PNG for INPUT from OCTETS, the content of the chunk IHDR. Signals UNUSABLE-FLOOR if
@@ -114,8 +114,8 @@ there are more than LIMIT pixels."
       (apply #'check-encoding input encoding)
       (destructuring-bind (&optional channels &rest depths) (rest (assoc colour +png-colours+))
         (unless (member depth depths)
-          (reject-damaged input "there are no PNG images of colour type ~D with ~D bits"
-                          colour depth))
+          (reject-damaged-png input "there are no PNG images of colour type ~D with ~D bits"
+                              colour depth))
         (make-png :input input :width width :height height :depth depth :channels channels
                   :palette-p (= 3 colour))))))
 
@@ -124,16 +124,16 @@ there are more than LIMIT pixels."
 there are more than LIMIT pixels."
   (multiple-value-bind (name start end) (next-chunk input)
     (unless (and (string= "IHDR" name) (= 13 (- end start)))
-      (reject-damaged input "the first chunk is ~A with ~D bytes, not IHDR with 13"
-                      name (- end start)))
-    (png-from-header input (subseq (input-octets input) start end) limit)))
+      (reject-damaged-png input "the first chunk is ~A with ~D bytes, not IHDR with 13"
+                          name (- end start)))
+    (png-from-header input (subseq (image-input-octets input) start end) limit)))
 
 ;;; The other chunks.
 
 (defun check-palette (png content)
   (unless (and (null (png-palette png)) (zerop (mod (length content) 3))
                (<= 1 (floor (length content) 3) 256))
-    (reject-damaged (png-input png) "a palette has 3 to 768 bytes, 3 for each colour, and this ~
+    (reject-damaged-png (png-input png) "a palette has 3 to 768 bytes, 3 for each colour, and this ~
                                      palette has ~D bytes, or is a second ~
                                      palette" (length content))))
 
@@ -142,7 +142,7 @@ there are more than LIMIT pixels."
     (reject-png (png-input png) "a colour of the image stands for transparent (tRNS), which is ~
                                  supported only for grey images and palettes"))
   (unless (or (png-palette-p png) (= 2 (length content)))
-    (reject-damaged (png-input png) "the chunk tRNS has ~D bytes, not 2" (length content))))
+    (reject-damaged-png (png-input png) "the chunk tRNS has ~D bytes, not 2" (length content))))
 
 (defun store-chunk (png name content)
   "Store CONTENT of the chunk NAME in PNG. Signals UNUSABLE-FLOOR if NAME is unknown and critical."
@@ -167,14 +167,14 @@ there are more than LIMIT pixels."
 
 (defun read-chunks (input limit)
   "Return the PNG that INPUT holds, of at most LIMIT pixels. Signals UNUSABLE-FLOOR."
-  (setf (input-position input) 8)
-  (let ((png (read-header-chunk input limit)) (octets (input-octets input)) (pieces '()))
+  (setf (image-input-position input) 8)
+  (let ((png (read-header-chunk input limit)) (octets (image-input-octets input)) (pieces '()))
     (loop
       (multiple-value-bind (name start end) (next-chunk input)
         (cond ((string= "IDAT" name) (push (cons start end) pieces))
               ((string= "IEND" name) (return))
               (t (store-chunk png name (subseq octets start end))))))
     (when (and (png-palette-p png) (null (png-palette png)))
-      (reject-damaged input "the palette, PLTE, is missing"))
+      (reject-damaged-png input "the palette, PLTE, is missing"))
     (setf (png-pixels png) (join-pieces octets pieces))
     png))

@@ -71,11 +71,12 @@ octet STEP to the left of OVER."
 
 ;;; A few rows are decompressed at a time, so that no image takes more memory than its samples.
 
-(defun check-pixels-there (png needed)
+(defun check-compressed-size (png needed)
   "Signal UNUSABLE-FLOOR if the compressed data of PNG are too few for NEEDED octets."
   ;; From one octet zlib makes 1032 at most.
   (when (< (* 1032 (length (png-pixels png))) needed)
-    (reject-damaged (png-input png) "the pixels take ~D bytes, for which ~D bytes of compressed ~
+    (reject-damaged-png (png-input png)
+                        "the pixels take ~D bytes, for which ~D bytes of compressed ~
                                      data are too few" needed (length (png-pixels png)))))
 
 (defun fill-with-rows (png inflater buffer size)
@@ -85,14 +86,14 @@ octet STEP to the left of OVER."
            (reject-png (png-input png) "the image is damaged, or its compression is unknown: its ~
                                         pixels cannot be decompressed"))
           ((< made size)
-           (reject-damaged (png-input png) "the pixels end before the last row")))))
+           (reject-damaged-png (png-input png) "the pixels end before the last row")))))
 
 (defun check-all-inflated (png inflater)
   "Signal UNUSABLE-FLOOR unless the data of INFLATER end after the last row of PNG."
   (when (eql 1 (inflate-into (make-octets 1) 1 inflater))
-    (reject-damaged (png-input png) "the pixels continue after the last row"))
+    (reject-damaged-png (png-input png) "the pixels continue after the last row"))
   (unless (ignore-errors (chipz:finish-dstate (inflater-state inflater)))
-    (reject-damaged (png-input png) "the check sum of the pixels is missing or wrong")))
+    (reject-damaged-png (png-input png) "the check sum of the pixels is missing or wrong")))
 
 (defun call-with-row (function png buffer start y row above)
   "Copy the row of PNG at START of BUFFER into ROW, unfiltered, and call FUNCTION with Y and ROW."
@@ -100,8 +101,8 @@ octet STEP to the left of OVER."
   (let ((step (png-pixel-octets png)))
     (replace row buffer :start1 step :start2 (1+ start))
     (unless (undo-filter (aref buffer start) row above step)
-      (reject-damaged (png-input png) "row ~D has the filter ~D, but filters are 0 to 4"
-                      (1+ y) (aref buffer start)))
+      (reject-damaged-png (png-input png) "row ~D has the filter ~D, but filters are 0 to 4"
+                          (1+ y) (aref buffer start)))
     (funcall function y row)))
 
 (defun call-with-rows (function png)
@@ -204,9 +205,10 @@ which begin after STEP octets."
 (defun check-palette-indices (png samples)
   "Signal UNUSABLE-FLOOR if a pixel of PNG has a colour that is not in its palette."
   (when (and (png-palette-p png) (find +no-colour+ (the samples samples)))
-    (reject-damaged (png-input png) "a pixel has a colour that the palette, with ~D colours, does ~
+    (reject-damaged-png (png-input png)
+                        "a pixel has a colour that the palette, with ~D colours, does ~
                                      not have"
-                    (floor (length (png-palette png)) 3))))
+                        (floor (length (png-palette png)) 3))))
 
 ;;; Several channels. Of two octets the high one is the first.
 
@@ -244,7 +246,7 @@ octets. A pixel has CHANNELS channels of OCTETS octets each."
   "Return the PNG image in INPUT, of at most LIMIT pixels, as a grey image. MODE says how alpha
 counts. Signals UNUSABLE-FLOOR."
   (let* ((png (read-chunks input limit)) (rule (alpha-treatment png mode)))
-    (check-pixels-there png (* (png-height png) (1+ (png-row-size png))))
+    (check-compressed-size png (* (png-height png) (1+ (png-row-size png))))
     (let ((samples (make-array (* (png-width png) (png-height png))
                                :element-type '(unsigned-byte 16))))
       (call-with-rows (row-sampler png samples rule) png)
@@ -254,7 +256,7 @@ counts. Signals UNUSABLE-FLOOR."
 (defun read-image (file limit mode)
   "Return the image in FILE, of at most LIMIT pixels, read in MODE. The first bytes of FILE decide
 whether it is PGM or PNG. Signals UNUSABLE-FLOOR."
-  (let ((input (make-input file (read-octets file limit))))
+  (let ((input (make-image-input file (read-octets file limit))))
     (cond ((png-begins-p input) (read-png input limit mode))
           ((pgm-kind input) (read-pgm input limit))
           (t (reject-image input "the first bytes of the image are not those of a PGM file (P2 or ~

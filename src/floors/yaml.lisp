@@ -116,11 +116,11 @@ of the file"))
 (defun trim (text)
   (string-trim '(#\Space #\Tab #\Return) text))
 
-(defun without-comment (text)
+(defun strip-comment (text)
   "Return TEXT without a comment. A comment begins at the start of TEXT or after a blank."
   (loop for start = (position #\# text) then (position #\# text :start (1+ start))
         while start
-        when (or (zerop start) (blank-p (char text (1- start))))
+        when (or (zerop start) (blank-character-p (char text (1- start))))
           return (trim (subseq text 0 start))
         finally (return (trim text))))
 
@@ -155,12 +155,12 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
 
 (defun read-quoted (file line text)
   (let ((end (closing-quote-position file line text)))
-    (unless (string= "" (without-comment (concatenate 'string " " (subseq text (1+ end)))))
+    (unless (string= "" (strip-comment (concatenate 'string " " (subseq text (1+ end)))))
       (reject-floor file line "there is text after the closing quote; leave that text out"))
     (unquoted file line text end)))
 
 (defun read-list (file line text)
-  (let ((text (without-comment text)))
+  (let ((text (strip-comment text)))
     (unless (eql (position #\] text) (1- (length text)))
       (reject-floor file line "a list must be complete on one line, with nothing after it, as in ~
                                [0.0, 0.0, 0.0]"))
@@ -175,7 +175,7 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
      (reject-floor file line "a value that begins with ~C is not supported; write a number, a name ~
                               of a file, or a list [a, b, c]"
                    (char text 0)))
-    (t (without-comment text))))
+    (t (strip-comment text))))
 
 (defun key-end (text)
   "Return the position of the colon after the key at the beginning of TEXT, or NIL."
@@ -183,7 +183,7 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
     (and end
          (plusp end)
          (char= #\: (char text end))
-         (or (= (1+ end) (length text)) (blank-p (char text (1+ end))))
+         (or (= (1+ end) (length text)) (blank-character-p (char text (1+ end))))
          end)))
 
 (defun read-entry (file line text entries)
@@ -198,20 +198,20 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
                     key (entry-line other)))
     (make-entry key line (value-at file line (trim (subseq text (1+ end)))))))
 
-(defun item-p (text)
+(defun list-item-p (text)
   "True if TEXT is an item of a list that is written below its key."
   (let ((text (trim text)))
     (and (starts-with-subseq "-" text)
-         (or (= 1 (length text)) (blank-p (char text 1))))))
+         (or (= 1 (length text)) (blank-character-p (char text 1))))))
 
-(defun add-item (file line text entry)
+(defun add-list-item (file line text entry)
   "Append the item in TEXT, which is LINE of FILE, to the list of ENTRY, the entry above the item."
   (unless (and entry (or (consp (entry-value entry)) (string= "" (entry-value entry))))
     (reject-floor file line "an item of a list has no key above it; write the list after its key, ~
                              as in origin: [0.0, 0.0, 0.0]"))
   (setf (entry-value entry)
         (append (and (consp (entry-value entry)) (entry-value entry))
-                (list (without-comment (trim (subseq (trim text) 1)))))))
+                (list (strip-comment (trim (subseq (trim text) 1)))))))
 
 (defun read-entries (file text)
   "Return the entries in TEXT, the content of FILE, in order. Signals UNUSABLE-FLOOR."
@@ -220,8 +220,8 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
           for whole in (uiop:split-string text :separator '(#\Newline))
           for text = (string-right-trim '(#\Return) whole)
           until (string= "..." (trim text))
-          do (cond ((string= "" (without-comment text)))
-                   ((and (null entries) (string= "---" (without-comment text))))
-                   ((item-p text) (add-item file line text (first entries)))
+          do (cond ((string= "" (strip-comment text)))
+                   ((and (null entries) (string= "---" (strip-comment text))))
+                   ((list-item-p text) (add-list-item file line text (first entries)))
                    (t (push (read-entry file line text entries) entries))))
     (nreverse entries)))

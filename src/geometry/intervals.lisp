@@ -173,8 +173,8 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 
 ;;; Growth.
 
-(declaim (inline %grown))
-(defun %grown (interval amount)
+(declaim (inline %grown-bounds))
+(defun %grown-bounds (interval amount)
   "Return the bounds of INTERVAL grown by AMOUNT; a negative AMOUNT shrinks, at most to the centre."
   (let ((low (- (%interval-min interval) amount))
         (high (+ (%interval-max interval) amount)))
@@ -189,11 +189,11 @@ leave A unchanged and return NIL (manual, Table 3.2; reading 44)."
 AMOUNT shrinks INTERVAL, at most to its centre (manual, Table 3.2)."
   (dispatch-on-types grow-interval! (interval amount) "an INTERVAL or PT-INTERVAL and a number"
     ((interval finite)
-     (multiple-value-call #'%set-interval! interval (%grown interval (double amount))))
+     (multiple-value-call #'%set-interval! interval (%grown-bounds interval (double amount))))
     ((pt-interval finite)
      (multiple-value-call #'%set-region! interval
-       (%grown (%pt-interval-x interval) (double amount))
-       (%grown (%pt-interval-y interval) (double amount)))))
+       (%grown-bounds (%pt-interval-x interval) (double amount))
+       (%grown-bounds (%pt-interval-y interval) (double amount)))))
   interval)
 
 (public grow-interval)

@@ -176,7 +176,7 @@ is an interval, return the interval or point interval of all products (manual, T
 
 ;;; Lengths.
 
-(declaim (inline length-of least-length greatest-length))
+(declaim (inline length-of least-absolute-value greatest-absolute-value))
 
 (defun scaled-length (x y most)
   "Return the length of the vector (X, Y) if the squares of X and Y overflow or underflow. MOST is
@@ -194,10 +194,10 @@ the larger of their absolute values."
         (sqrt (+ (* x x) (* y y)))
         (scaled-length x y most))))
 
-(defun least-length (interval)
+(defun least-absolute-value (interval)
   (max 0d0 (%interval-min interval) (- (%interval-max interval))))
 
-(defun greatest-length (interval)
+(defun greatest-absolute-value (interval)
   (max (abs (%interval-min interval)) (abs (%interval-max interval))))
 
 (public norm)
@@ -207,11 +207,11 @@ interval, return the INTERVAL of the lengths of its elements (manual, Table 3.1)
   (dispatch-on-types norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
     ((pt) (length-of (%pt-x a) (%pt-y a)))
     ((finite) (abs (double a)))
-    ((interval) (%make-interval (least-length a) (greatest-length a)))
+    ((interval) (%make-interval (least-absolute-value a) (greatest-absolute-value a)))
     ((pt-interval)
      (let ((x (%pt-interval-x a)) (y (%pt-interval-y a)))
-       (%make-interval (length-of (least-length x) (least-length y))
-                       (length-of (greatest-length x) (greatest-length y)))))))
+       (%make-interval (length-of (least-absolute-value x) (least-absolute-value y))
+                       (length-of (greatest-absolute-value x) (greatest-absolute-value y)))))))
 
 (public dist)
 (defun dist (a b)

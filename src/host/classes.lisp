@@ -2,11 +2,12 @@
 
 (in-package :ars-magna.host)
 
-(export '(define-function-class generic-name class-ancestors class-slot-names methods-on-class
+(export '(define-generic-function-class generic-name class-ancestors class-slot-names
+           methods-on-class
           methods-of-generic class-slot-types instance-slot-names reference-slots layout-of
-          layout-number instance-slot copy-condition))
+          layout-hash instance-slot copy-condition))
 
-(defmacro define-function-class (name documentation)
+(defmacro define-generic-function-class (name documentation)
   "Define NAME, a class of generic functions, with DOCUMENTATION."
   `(defclass ,name (standard-generic-function)
      ()
@@ -50,12 +51,12 @@
 
 ;;; Layouts were called wrappers in SBCL 2.2.
 
-(declaim (inline layout-of layout-number instance-slot (setf instance-slot)))
+(declaim (inline layout-of layout-hash instance-slot (setf instance-slot)))
 (defun layout-of (object)
   "Return the layout of the structure OBJECT. All structures of a type have the same layout."
   (internal (:sb-kernel #:%instance-wrapper #:%instance-layout) object))
 
-(defun layout-number (layout)
+(defun layout-hash (layout)
   "Return a hash number of LAYOUT. Few other layouts have the same number."
   (internal (:sb-kernel #:wrapper-clos-hash #:layout-clos-hash) layout))
 

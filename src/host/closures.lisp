@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.host)
 
-(export '(environment-p environment-values fixed-slot-p closure-p closure-values copy-closure
+(export '(environment-p environment-values interpreter-only-slot-p closure-p closure-values
+                        copy-closure
           replace-closure-values value-cell-p cell-value exit-cell-p make-value-cell))
 
 ;;; An SBCL built without SB-EVAL has no interpreted functions, so no object is one.
@@ -65,7 +66,7 @@
   (defun copy-interpreted (function) function)
   (defun same-interpreted-p (function other) (eq function other)))
 
-(defun fixed-slot-p (name)
+(defun interpreter-only-slot-p (name)
   "True if the slot NAME of an interpreter's environment never holds users' variables or functions."
   (not (member name '("PARENT" "VARS" "FUNS") :test #'string=)))
 

@@ -3,7 +3,8 @@
 (in-package :ars-magna.host)
 
 (export '(method-code declared-lambda-list same-code-p code-references
-          lambda-list-of accepts-count-p callable-with-p function-file files-of-other-definitions
+          lambda-list-of accepts-count-p callable-with-count-p function-file
+          files-of-other-definitions
           call-recording-file add-definition-sources))
 
 ;;; Since SBCL 2.4.10, names of called functions are not among the constants of code but in a
@@ -52,7 +53,7 @@
                              (internal-value :sb-vm #:code-constants-offset))))
   "True if this SBCL stores the descriptions of functions before the constants of code.")
 
-(defun first-constant (code)
+(defun first-constant-index (code)
   "Return the index of the first constant of CODE after the descriptions of its functions."
   (+ (internal-value :sb-vm #:code-constants-offset)
      (if *functions-among-constants-p*
@@ -63,7 +64,7 @@
 (defun code-constants (function)
   "Return the constants in the code of FUNCTION and functions compiled with it, and the names used."
   (let ((code (code-of function)))
-    (append (constants-from code (first-constant code))
+    (append (constants-from code (first-constant-index code))
             (linked-names code)
             (names-used code))))
 
@@ -102,7 +103,7 @@ other functions, constants and closed-over values. Numbers, characters and strin
     (and (<= (length required) count)
          (or rest-p keys (<= count (+ (length required) (length optional)))))))
 
-(defun callable-with-p (function count)
+(defun callable-with-count-p (function count)
   "True if FUNCTION, a function or a name, accepts COUNT arguments or has an unknown lambda list."
   (multiple-value-bind (list unknown-p) (lambda-list-of function)
     (or unknown-p (accepts-count-p list count))))

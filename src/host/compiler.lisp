@@ -4,7 +4,7 @@
 
 (export '(show-lambda-list nested-form-p edited-file error-context context-original-form
           compiler-error-p copy-source-location has-source-location-p call-at-source-location
-          at-end-of-unit call-as-unit location-in-text compiler-location form-start
+          at-end-of-unit call-in-new-unit location-in-text compiler-location form-start
           line-of-last-character line-of-next-character encapsulated-condition undecodable-format))
 
 ;;; SBCL records the location of each list that it has read to compile or load. COPY-SOURCE-LOCATION
@@ -29,13 +29,13 @@
 
 ;;; Source locations.
 
-(defun source-locations ()
+(defun source-location-table ()
   "Return the table of the source locations of forms in the current compilation, or NIL."
   (let ((table (value-if-bound (compiler-variable #:*source-paths*))))
     (and (hash-table-p table) table)))
 
 (defun source-location (form)
-  (let ((table (source-locations)))
+  (let ((table (source-location-table)))
     (and table (consp form) (values (gethash form table)))))
 
 (defun has-source-location-p (form)
@@ -46,7 +46,7 @@
   "Give the form NEW the source location of the form OLD, unless NEW has a location. Return NEW."
   (let ((location (and (consp new) (not (eq new old)) (source-location old))))
     (when (and location (not (source-location new)))
-      (setf (gethash new (source-locations)) location))
+      (setf (gethash new (source-location-table)) location))
     new))
 
 (defun call-at-source-location (form function)
@@ -185,7 +185,7 @@ were warnings, and whether any was worse than a style warning."
               (move-tasks-to-outer *unit*)
               (let ((unit (shiftf *unit* nil))) (end-unit unit)))))))
 
-(defun call-as-unit (function)
+(defun call-in-new-unit (function)
   "Call FUNCTION, which evaluates forms that belong together, and return its values."
   (call-in-unit :load function t))
 
@@ -201,7 +201,7 @@ were warnings, and whether any was worse than a style warning."
                    (values output (or warned warned-now) (or failed failed-now)))))))))
 
 ;; A file compiled or loaded meanwhile has definitions of its own.
-(defun apply-in-own-file (function arguments)
+(defun apply-with-own-file (function arguments)
   "Apply FUNCTION, which compiles or loads a file, to ARGUMENTS. Definitions are recorded as defined
 in that file."
   (let ((name (compiler-variable #:*source-namestring*)))
@@ -212,11 +212,11 @@ in that file."
 
 (wrap-function 'compile-file
                (lambda (function &rest arguments)
-                 (compile-in-unit (lambda () (apply-in-own-file function arguments)))))
+                 (compile-in-unit (lambda () (apply-with-own-file function arguments)))))
 
 (wrap-function 'load
                (lambda (function &rest arguments)
-                 (call-in-unit :load (lambda () (apply-in-own-file function arguments)))))
+                 (call-in-unit :load (lambda () (apply-with-own-file function arguments)))))
 
 (wrap-function (internal-name :sb-c '#:%with-compilation-unit)
                (lambda (function body &rest options &key override &allow-other-keys)

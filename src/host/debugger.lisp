@@ -12,14 +12,14 @@
 (defvar *report-addition* (constantly nil)
   "A function that returns a sentence to append to the report of an error of Lisp's own, or NIL.")
 
-(defun write-addition (condition stream)
+(defun write-report-addition (condition stream)
   (unless *print-escape*
     (format stream "~@[~&~A~]" (ignore-errors (funcall *report-addition* condition)))))
 
 (macrolet ((define-additions (&rest types)
              `(progn ,@(loop for type in types
                              collect `(defmethod print-object :after ((condition ,type) stream)
-                                        (write-addition condition stream))))))
+                                        (write-report-addition condition stream))))))
   (define-additions undefined-function unbound-variable reader-error type-error))
 
 ;;;; The front end, such as the prompt, that can ask a person

@@ -2,13 +2,14 @@
 
 (in-package :ars-magna.host)
 
-(export '(function-arguments comma-p form-behind-comma bound-in-walk-p variable-kind
+(export '(function-argument-types comma-p form-behind-comma bound-in-walk-p variable-kind
           local-variable-p known-variable-p special-variable-p local-function-p known-function-p
           macro-expander lisp-symbol-p extended-environment evaluate-form walk-form expand-in-walk
-          users-symbol-p variable-name-p defvar-forms variable-name-trouble undefined-name
+          users-symbol-p variable-name-p defvar-forms variable-name-trouble
+          undefined-name-of-warning
           still-undefined-p lock-violation locked-symbol copy-nicknames))
 
-(defun function-arguments (name)
+(defun function-argument-types (name)
   "Return the argument types of the function NAME, as in a type (FUNCTION (type...)), and true; NIL
 and NIL if the compiler does not know them."
   (let ((type (and (member (internal (:sb-int #:info) :function :where-from name)
@@ -174,7 +175,7 @@ such as those of Common Lisp and of the simulator, cannot."
 
 ;;; Names that the compiler finds used but undefined.
 
-(defun undefined-name (condition)
+(defun undefined-name-of-warning (condition)
   "If CONDITION warns of an undefined name, return the name and :FUNCTION or :VARIABLE; else NIL."
   (let ((arguments (and (typep condition '(and warning simple-condition))
                         (simple-condition-format-arguments condition))))

@@ -6,7 +6,7 @@
           existing-path missing-directory wildcard-name-p replace-file regular-file-p
           check-writable dangling-link-p name-in-directory file-size unusable-file-text
           file-name-text +illegible+ utf-8-encoded utf-8-decoded truncate-file call-with-file-lock
-          make-directories make-new-directory process-id copy-permissions temporary-file-prefix
+          make-directories make-missing-directory process-id copy-permissions temporary-file-prefix
           remove-abandoned-files *wildcard-text* check-name-decodable environment-value
           real-microseconds date-and-time run-command run-attached run-filter octet-input-stream
           text-output-stream descriptor-stream wait-for-input window-rows-and-columns char-width))
@@ -47,7 +47,7 @@ true. ~ and ~/ are the home directory."
 *DEFAULT-PATHNAME-DEFAULTS*, by default the current directory."
   (uiop:pathname-directory-pathname (uiop:get-pathname-defaults)))
 
-(defun system-name (path)
+(defun absolute-native-name (path)
   "Return the name of PATH for system calls. A relative PATH starts in the BASE-DIRECTORY."
   (native-name (merge-pathnames path (base-directory))))
 
@@ -83,24 +83,24 @@ true. ~ and ~/ are the home directory."
 (defun replace-file (file by)
   "Atomically rename the file BY to FILE, replacing an existing FILE. FILE and BY are pathnames;
 relative ones start in the BASE-DIRECTORY. Signals an error if the system refuses."
-  (sb-posix:rename (system-name by) (system-name file))
+  (sb-posix:rename (absolute-native-name by) (absolute-native-name file))
   (values))
 
 (defun copy-permissions (file from)
   "Give FILE the permissions of the file FROM, if FROM exists."
-  (let ((status (ignore-errors (sb-posix:stat (system-name from)))))
+  (let ((status (ignore-errors (sb-posix:stat (absolute-native-name from)))))
     (when status
-      (sb-posix:chmod (system-name file) (logand #o777 (sb-posix:stat-mode status))))))
+      (sb-posix:chmod (absolute-native-name file) (logand #o777 (sb-posix:stat-mode status))))))
 
 (defun regular-file-p (path)
   "True if PATH is a regular file: no directory, device or pipe. Signals an error if it is missing."
   (= sb-posix:s-ifreg
-     (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (system-name path))))))
+     (logand sb-posix:s-ifmt (sb-posix:stat-mode (sb-posix:stat (absolute-native-name path))))))
 
 ;; Renaming needs only the directory's permissions, and the superuser may write anything.
 (defun check-writable (path)
   "Signal an error if the file PATH exists and is write-protected or not writable by this process."
-  (let ((name (system-name path)))
+  (let ((name (absolute-native-name path)))
     (when (and (existing-path path)
                (or (zerop (logand #o222 (sb-posix:stat-mode (sb-posix:stat name))))
                    (handler-case (progn (sb-posix:access name sb-posix:w-ok) nil)
@@ -109,7 +109,7 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
 
 (defun dangling-link-p (path)
   "True if PATH, a pathname or string, is a link to a missing file."
-  (let ((name (system-name path)))
+  (let ((name (absolute-native-name path)))
     (and (ignore-errors (sb-posix:lstat name))
          (not (ignore-errors (sb-posix:stat name))))))
 
@@ -121,7 +121,7 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
   "Return a text that says why PATH, a pathname or string, is no usable regular file, or NIL."
   (cond ((wildcard-name-p path) *wildcard-text*)
         ((string= "" (native-name path)) "that is no name; give the name of a file")
-        ((not (ignore-errors (sb-posix:stat (system-name path))))
+        ((not (ignore-errors (sb-posix:stat (absolute-native-name path))))
          "there is no such file, or it cannot be accessed")
         ((not (regular-file-p path)) "it is a directory or a device")))
 
@@ -146,7 +146,7 @@ look the same.)"
 
 (defun truncate-file (path length)
   "Truncate the file PATH to LENGTH octets."
-  (sb-posix:truncate (system-name path) length)
+  (sb-posix:truncate (absolute-native-name path) length)
   (values))
 
 (defun make-directories (path)
@@ -155,15 +155,15 @@ look the same.)"
   (unless (uiop:directory-exists-p path)
     (let ((parent (uiop:pathname-parent-directory-pathname path)))
       (unless (equal parent path) (make-directories parent)))
-    (handler-case (sb-posix:mkdir (string-right-trim "/" (system-name path)) #o777)
+    (handler-case (sb-posix:mkdir (string-right-trim "/" (absolute-native-name path)) #o777)
       (sb-posix:syscall-error ()
         (unless (uiop:directory-exists-p path)
           (error "~A cannot be created; give the name of another directory"
                  (native-name path)))))))
 
-(defun make-new-directory (path)
+(defun make-missing-directory (path)
   "Create the directory PATH; its parent must exist. Return true if PATH did not exist before."
-  (handler-case (progn (sb-posix:mkdir (string-right-trim "/" (system-name path)) #o700) t)
+  (handler-case (progn (sb-posix:mkdir (string-right-trim "/" (absolute-native-name path)) #o700) t)
     (sb-posix:syscall-error (condition)
       ;; The owner may have removed it by now.
       (unless (= sb-posix:eexist (sb-posix:syscall-errno condition)) (error condition)))))
@@ -172,7 +172,7 @@ look the same.)"
   "Call FUNCTION while this process has a lock on the file PATH, which is created if it does not
 exist. Return true and the value of FUNCTION; NIL if another process has the lock. If PATH cannot be
 written, call REFUSED instead of FUNCTION. The system releases the lock when this process ends."
-  (let ((descriptor (handler-case (sb-posix:open (system-name path)
+  (let ((descriptor (handler-case (sb-posix:open (absolute-native-name path)
                                                  (logior sb-posix:o-creat sb-posix:o-rdwr) #o644)
                       (sb-posix:syscall-error () (funcall refused)))))
     (unwind-protect
@@ -243,20 +243,20 @@ it cannot be run. If OUTPUT is :STRING, return the output as a string, as a seco
         (values status text))
     (error () nil)))
 
-(defparameter *tied-start-code*
+(defparameter *child-start-code*
   "setpriv --pdeathsig TERM true 2>/dev/null && exec setpriv --pdeathsig TERM \"$@\"; exec \"$@\""
   "Shell code that runs a program. On systems with the command setpriv, the program is terminated
 when this process ends for any reason.")
 
-(defun run-tied (program arguments &rest streams)
+(defun run-child-program (program arguments &rest streams)
   "Run PROGRAM, searched in PATH, with the strings ARGUMENTS, and wait for its end. STREAMS are
 keywords of UIOP:LAUNCH-PROGRAM. PROGRAM is terminated on a non-local exit, or when this process
 ends. Return the exit status of the shell, or NIL if it cannot be run; with :ERROR-OUTPUT :STREAM
 also the error output, a string."
   (let ((process (handler-case (apply #'uiop:launch-program
-                                      (list* "sh" "-c" *tied-start-code* "sh" program arguments)
+                                      (list* "sh" "-c" *child-start-code* "sh" program arguments)
                                       streams)
-                   (error () (return-from run-tied nil))))
+                   (error () (return-from run-child-program nil))))
         (errors (eq :stream (getf streams :error-output)))
         (status nil))
     (unwind-protect
@@ -270,18 +270,18 @@ also the error output, a string."
       (when errors (uiop:close-streams process)))))
 
 (defun run-attached (program arguments)
-  "Run PROGRAM as RUN-TIED does, on this process's standard streams. Return the exit status or NIL."
-  (run-tied program arguments
-            :input :interactive :output :interactive :error-output :interactive))
+  "Run PROGRAM as RUN-CHILD-PROGRAM does, on this process's standard streams. Return the exit status or NIL."
+  (run-child-program program arguments
+                     :input :interactive :output :interactive :error-output :interactive))
 
 (defun run-filter (program arguments input output)
-  "Run PROGRAM with ARGUMENTS as RUN-TIED does. Its input is the string INPUT; its output goes to
+  "Run PROGRAM with ARGUMENTS as RUN-CHILD-PROGRAM does. Its input is the string INPUT; its output goes to
 OUTPUT, a stream to a file. Return the exit status, or NIL if PROGRAM does not exist, and the error
 output as a string."
   (with-input-from-string (in input)
     (multiple-value-bind (status errors)
-        (run-tied program arguments :input in :output output :error-output :stream
-                                    :external-format :utf-8)
+        (run-child-program program arguments :input in :output output :error-output :stream
+                                             :external-format :utf-8)
       ;; A shell returns this status if it finds no such program.
       (values (if (eql status 127) nil status) errors))))
 

@@ -4,8 +4,9 @@
 
 (export '(deferring-interrupts allowing-interrupts with-interruptible-wait
           interrupts-deferred-p unwind-protect-strictly
-          call-holding-interrupts call-open-to-interrupts waiting-at-most deadline-passed
-          in-any-case call-interruptible call-each time-limit let-callers-handle call-with-limit
+          call-holding-interrupts call-with-held-interrupts waiting-at-most deadline-passed
+          in-any-case call-allowing-interrupts-if call-each time-limit signal-to-callers-first
+          call-with-limit
           user-interrupt signal-user-interrupt call-on-interrupt call-on-continuing
           end-on-interrupt end-on-termination))
 
@@ -74,23 +75,23 @@ CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outs
 
 ;;; Strict deferral for functions: code in between cannot allow interrupts.
 
-(defvar *open-to-interrupts* #'funcall
+(defvar *call-with-held-interrupts* #'funcall
   "A function that calls its argument, a function, with interrupts allowed.")
 
 (defun call-holding-interrupts (function)
-  "Call FUNCTION with interrupts deferred, except within CALL-OPEN-TO-INTERRUPTS."
+  "Call FUNCTION with interrupts deferred, except within CALL-WITH-HELD-INTERRUPTS."
   (internal (:sb-sys #:without-interrupts)
     (let* ((holding *interrupt-deferral*)
-           (*open-to-interrupts* (lambda (function)
-                                   (let ((*interrupt-deferral* holding))
-                                     (internal (:sb-sys #:with-local-interrupts)
-                                       (funcall function)))))
+           (*call-with-held-interrupts* (lambda (function)
+                                          (let ((*interrupt-deferral* holding))
+                                            (internal (:sb-sys #:with-local-interrupts)
+                                              (funcall function)))))
            (*interrupt-deferral* :strictly))
       (funcall function))))
 
-(defun call-open-to-interrupts (function)
+(defun call-with-held-interrupts (function)
   "Call FUNCTION with interrupts allowed, including those that were deferred."
-  (funcall *open-to-interrupts* function))
+  (funcall *call-with-held-interrupts* function))
 
 ;;; A deadline, unlike a time limit, interrupts only where a thread waits.
 
@@ -104,8 +105,8 @@ CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outs
 
 ;;; Cleanup that always completes.
 
-(declaim (inline call-interruptible))
-(defun call-interruptible (open-p function)
+(declaim (inline call-allowing-interrupts-if))
+(defun call-allowing-interrupts-if (open-p function)
   "Call FUNCTION, with interrupts allowed if OPEN-P is true."
   (if open-p
       (call-allowing-interrupts function)
@@ -119,7 +120,7 @@ CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outs
                  (unwind-protect (funcall (the function (first functions)))
                    (call-rest (rest functions))))))
       (deferring-interrupts
-        (unwind-protect (call-interruptible open-p first)
+        (unwind-protect (call-allowing-interrupts-if open-p first)
           (call-rest others))))))
 
 ;; UNWIND-PROTECT-STRICTLY is for little work that is done often; it allows no interrupts.
@@ -148,17 +149,17 @@ values of the first form."
 ;;; FiveAM signals failed checks and continues the test by the restart IGNORE-FAILURE. The caller of
 ;;; the test handles this, also where the check is in a plan.
 
-(defun failed-check-p (condition)
+(defun failed-test-check-p (condition)
   (and (typep condition 'error)
        (find "IGNORE-FAILURE" (compute-restarts condition)
              :key #'restart-name :test #'string=)
        t))
 
-(defun let-callers-handle (condition)
+(defun signal-to-callers-first (condition)
   "If CONDITION is a time limit or a failed check of a test, signal it to the callers of the run
 first. Return true if CONDITION is a time limit."
   (let ((limit-p (typep condition 'time-limit)))
-    (when (or limit-p (failed-check-p condition)) (signal condition))
+    (when (or limit-p (failed-test-check-p condition)) (signal condition))
     limit-p))
 
 (defun call-with-limit (function seconds give-up)

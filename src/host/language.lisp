@@ -3,7 +3,7 @@
 (in-package :ars-magna.host)
 
 (export '(*hot* compiler-note declaim-final form-calling global-value define-global
-          weak-table-p make-similar-table make-weak weak-value define-event add-listener
+          weak-table-p make-similar-table make-weak-reference weak-value define-event add-listener
           call-listeners finite-p positive-infinity-p double-to-bits bits-to-double
           finite-double-p cell-index tick-count double random-words random-state-words
           fill-random-words wrap-random-renewal))
@@ -56,7 +56,7 @@ set. Signals UNBOUND-VARIABLE if SYMBOL has no global value."
 
 ;;;; Weak references
 
-(defun make-weak (object)
+(defun make-weak-reference (object)
   "Return a weak reference to OBJECT."
   (sb-ext:make-weak-pointer object))
 
@@ -95,7 +95,7 @@ set. Signals UNBOUND-VARIABLE if SYMBOL has no global value."
   (declare (type double-float number))
   (/= #x7FF00000 (logand #x7FF00000 (internal (:sb-kernel #:double-float-high-bits) number))))
 
-(defun other-finite-p (object)
+(defun finite-non-double-p (object)
   (typecase object
     (float (not (or (sb-ext:float-infinity-p object) (sb-ext:float-nan-p object))))
     (real (<= (abs object) most-positive-double-float))))
@@ -105,7 +105,7 @@ set. Signals UNBOUND-VARIABLE if SYMBOL has no global value."
 infinities, NaNs, and integers and ratios that are too large."
   (if (typep object 'double-float)
       (finite-double-p object)
-      (other-finite-p object)))
+      (finite-non-double-p object)))
 
 (defun positive-infinity-p (object)
   "True if OBJECT is a float that is positive infinity."
@@ -135,8 +135,8 @@ infinities, NaNs, and integers and ratios that are too large."
   "A time or a duration in simulated ticks."
   '(unsigned-byte 61))
 
-(declaim (ftype (function (t) double-float) other-double))
-(defun other-double (number)
+(declaim (ftype (function (t) double-float) coerce-to-double))
+(defun coerce-to-double (number)
   (coerce (the real number) 'double-float))
 
 (declaim (inline double))
@@ -148,7 +148,7 @@ infinities, NaNs, and integers and ratios that are too large."
     (single-float (coerce number 'double-float))
     (ratio (coerce number 'double-float))
     ;; Not inline, or the compiler would complain where it cannot rule out complex numbers.
-    (t (other-double number))))
+    (t (coerce-to-double number))))
 
 ;;; In all tested versions of SBCL a random state is 627 words of the Mersenne Twister MT19937: two
 ;;; constants, the position of the next word, and 624 words.

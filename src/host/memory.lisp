@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.host)
 
-(export '(heap-bytes collect-garbage-early heap-room-p dynamic-usage collections recover-memory
+(export '(heap-bytes collect-garbage-early heap-room-p dynamic-usage collection-epoch recover-memory
           stack-full-p))
 
 (defun dynamic-usage ()
@@ -21,7 +21,7 @@
   "Clear the unused part of the stack, whose old values would keep objects from being collected."
   (internal (:sb-sys #:scrub-control-stack)))
 
-(defun collections ()
+(defun collection-epoch ()
   "Return an object that is replaced by a new object after each garbage collection."
   (internal-value :sb-kernel #:*gc-epoch*))
 
@@ -49,7 +49,7 @@ allocated. A later collection would have to copy the new objects."
 ;;; program that leaves by a non-local exit may never touch that page. Its thread, or the next one
 ;;; with that stack, then dies of its second overflow.
 
-(defun restore-stack ()
+(defun restore-stack-guard ()
   "Restore the guard pages of this thread's stack. Only a small part of the stack may be in use."
   (let ((end (internal (:sb-kernel #:get-lisp-obj-address)
                        (internal-value :sb-vm #:*control-stack-start*))))
@@ -69,5 +69,5 @@ allocated. A later collection would have to copy the new objects."
   "After a non-local exit for CONDITION, restore a full stack's guard pages or collect garbage."
   (when (typep condition 'storage-condition)
     (if (stack-full-p condition)
-        (restore-stack)
+        (restore-stack-guard)
         (sb-ext:gc :full t))))

@@ -3,9 +3,9 @@
 (in-package :ars-magna.host)
 
 (export '(atomic-count swap-if-eq memory-barrier make-lock with-lock call-if-free make-semaphore
-          wait-on-semaphore wait-and-serve wait-while-serving call-when-free *exiting-p*
+          wait-on-semaphore serve-and-wait-once wait-while-serving call-when-free *exiting-p*
           call-at-exit start-thread own-thread-p join-thread interrupt-thread current-thread
-          users-thread-p yield-thread function-with-specials call-recording-names
+          users-thread-p yield-thread function-with-specials call-recording-robot-names
           other-thread-robot-text other-thread-run-text))
 
 ;;; A PLACE here is a structure's slot, by its accessor, a CAR or CDR, or a symbol's value.
@@ -55,7 +55,7 @@
         (bordeaux-threads:wait-on-semaphore semaphore :timeout (max seconds 1d-6))
         (bordeaux-threads:wait-on-semaphore semaphore))))
 
-(defun wait-and-serve (semaphore seconds)
+(defun serve-and-wait-once (semaphore seconds)
   "Wait on SEMAPHORE for at most SECONDS, but first serve the front end and other threads that need
 the terminal. Return true if SEMAPHORE was decremented. Call this function in a loop."
   (yield-foreground)
@@ -66,7 +66,7 @@ the terminal. Return true if SEMAPHORE was decremented. Call this function in a 
   "Wait on SEMAPHORE for SECONDS in all, in short waits. Between them, this thread serves others.
 The time for serving others does not count. Return true if SEMAPHORE was decremented."
   (loop for left = seconds then (- left 0.2)
-        thereis (wait-and-serve semaphore (min left 0.2))
+        thereis (serve-and-wait-once semaphore (min left 0.2))
         while (< 0.2 left)))
 
 (defun call-when-free (lock function)
@@ -147,25 +147,26 @@ threads start with global values; such a function gives them the values bound in
 ;;; name is the top level's robot, which may surprise its user. Code that gets a request for that
 ;;; robot can explain why.
 
-(defvar *bound-names* (list '())
+(defvar *bound-robot-names* (list '())
   "A list of one list, with (thread number name...) for each WITH-SIMULATION in progress.")
 
-(defvar *binding-count* (list 0)
-  "A list of one integer: how many times CALL-RECORDING-NAMES has bound names.")
+(defvar *robot-binding-count* (list 0)
+  "A list of one integer: how many times CALL-RECORDING-ROBOT-NAMES has bound names.")
 
-(defun call-recording-names (names function)
+(defun call-recording-robot-names (names function)
   "Call FUNCTION, in which this thread has bound NAMES to robots, and record the bindings for
 messages in other threads. Return the values of FUNCTION."
-  (let ((entry (list* (current-thread) (incf (car *binding-count*)) names)))
+  (let ((entry (list* (current-thread) (incf (car *robot-binding-count*)) names)))
     (in-any-case
-      (progn (atomic-push entry (car *bound-names*))
+      (progn (atomic-push entry (car *bound-robot-names*))
              (funcall function))
-      (loop for entries = (car *bound-names*)
-            until (swap-if-eq (car *bound-names*) entries (remove entry entries :test #'eq))))))
+      (loop for entries = (car *bound-robot-names*)
+            until (swap-if-eq (car *bound-robot-names*) entries
+                              (remove entry entries :test #'eq))))))
 
 (defun other-thread-run-text ()
   "Return a text on how this thread can use another thread's run; NIL if no thread has bound a run."
-  (let ((entry (find (current-thread) (car *bound-names*) :key #'first :test-not #'eq)))
+  (let ((entry (find (current-thread) (car *bound-robot-names*) :key #'first :test-not #'eq)))
     (and entry
          (format nil "The simulation of (with-simulation (~(~{~A~^ ~}~)) ...), in ~A, is known to ~
                       that thread only. Pass it on in a variable: (let ((simulation ~
@@ -177,7 +178,7 @@ messages in other threads. Return the values of FUNCTION."
 values: a text that says how code in this thread can use that robot, and the number of the binding.
 Else return NIL."
   (let ((entries (remove-if-not (lambda (entry) (member name (cddr entry) :test #'eq))
-                                (car *bound-names*)))
+                                (car *bound-robot-names*)))
         (word (string-downcase name)))
     (unless (or (null entries) (find (current-thread) entries :key #'first))
       (values (format nil "In this thread (~A), ~A is the robot of the top level. The robot of ~

@@ -31,7 +31,7 @@
                              is empty. Write (continuation (err &rest results) ~:*~S)."
                             shown))))))
 
-(defun warn-of-error-codes (variable body)
+(defun warn-of-wrong-error-codes (variable body)
   "Warn if BODY of a CONTINUATION compares VARIABLE with a keyword that is no error code."
   (map-comparisons (lambda (subject word form)
                      (declare (ignore form))
@@ -46,7 +46,7 @@ The form is like LAMBDA, but types may follow the parameters, and unused paramet
 (manual 3.1.1; reading 39)."
   (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
     (check-continuation lambda-list body)
-    (warn-of-error-codes (first lambda-list) body)
+    (warn-of-wrong-error-codes (first lambda-list) body)
     `#'(lambda ,lambda-list
          (declare (ignorable ,@(lambda-list-variables lambda-list)))
          ,@body)))
@@ -102,7 +102,7 @@ follow the parameters (manual 3.1)."
 ;;; A pattern compiles to nested tests. TEMPORARIES is an alist from the names met so far, in the
 ;;; order of the tests, to the variables that hold what they matched.
 
-(defun matchvar-test (name datum temporaries)
+(defun matchvar-test-form (name datum temporaries)
   (let ((known (assoc name temporaries)))
     (cond ((null name) (values t temporaries))
           (known (values `(value-equal ,(cdr known) ,datum) temporaries))
@@ -110,21 +110,23 @@ follow the parameters (manual 3.1)."
                (values `(progn (setq ,temporary ,datum) t)
                        (acons name temporary temporaries)))))))
 
-(defun cons-test (pattern datum temporaries)
+(defun cons-test-form (pattern datum temporaries)
   (with-gensyms (first rest)
-    (multiple-value-bind (first-test temporaries) (pattern-test (car pattern) first temporaries)
-      (multiple-value-bind (rest-test temporaries) (pattern-test (cdr pattern) rest temporaries)
+    (multiple-value-bind (first-test temporaries) (pattern-test-form (car pattern) first
+                                                                     temporaries)
+      (multiple-value-bind (rest-test temporaries) (pattern-test-form (cdr pattern) rest
+                                                                      temporaries)
         (values `(and (consp ,datum)
                       (cl:let ((,first (car ,datum)) (,rest (cdr ,datum)))
                         (declare (ignorable ,first ,rest))
                         (and ,first-test ,rest-test)))
                 temporaries)))))
 
-(defun pattern-test (pattern datum temporaries)
+(defun pattern-test-form (pattern datum temporaries)
   "Return two values: a form that tests if PATTERN matches the value of the variable DATUM; and
 TEMPORARIES with new temporary variables for the matchvars in PATTERN."
-  (cond ((matchvar-p pattern) (matchvar-test (matchvar-name pattern) datum temporaries))
-        ((consp pattern) (cons-test pattern datum temporaries))
+  (cond ((matchvar-p pattern) (matchvar-test-form (matchvar-name pattern) datum temporaries))
+        ((consp pattern) (cons-test-form pattern datum temporaries))
         ((null pattern) (values `(null ,datum) temporaries))
         ((eq pattern t) (values `(eq ,datum t) temporaries))
         (t (values `(value-equal ',pattern ,datum) temporaries))))
@@ -135,7 +137,7 @@ TEMPORARIES with new temporary variables for the matchvars in PATTERN."
 ?x must match the same value. If PATTERN matches, each variable x is set to the value that ?x has
 matched. ?() matches anything; symbols match by name, numbers by value (manual 5.1.1; reading 34)."
   (with-gensyms (value)
-    (multiple-value-bind (test temporaries) (pattern-test pattern value '())
+    (multiple-value-bind (test temporaries) (pattern-test-form pattern value '())
       `(cl:let ((,value ,datum) ,@(mapcar #'cdr temporaries))
          (declare (ignorable ,value))
          (when ,test

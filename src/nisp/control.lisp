@@ -87,17 +87,17 @@ SLOTS is an alist from names of slots to names of readers."
 (defun ensure-nisp-type (name)
   (ensure-gethash (string name) *nisp-types* (make-nisp-type (string name))))
 
-(defun names-of-classes (package)
+(defun exported-class-names (package)
   "Return the names of the classes that PACKAGE exports; NIL if there is no such package."
   (and (find-package package)
        (loop for symbol being the external-symbols of package
              when (find-class symbol nil) collect (symbol-name symbol))))
 
-(defun known-types ()
+(defun known-type-names ()
   "Return a sorted list of the names of registered types and of classes that NISP and ARS export."
   (sort (remove-duplicates (append (loop for name being the hash-keys of *nisp-types* collect name)
-                                   (names-of-classes "NISP")
-                                   (names-of-classes "ARS"))
+                                   (exported-class-names "NISP")
+                                   (exported-class-names "ARS"))
                            :test #'string=)
         #'string<))
 
@@ -118,9 +118,9 @@ SLOTS is an alist from names of slots to names of readers."
        (symbolp type)
        (not (find-nisp-type type))
        (not (find-class type nil))
-       (find-if (lambda (name) (misspelling-p type name)) (known-types))))
+       (find-if (lambda (name) (misspelling-p type name)) (known-type-names))))
 
-(defun warn-of-type (operator type)
+(defun warn-of-misspelled-type (operator type)
   (when (similar-type type)
     (warn-of-style "~A: there is no type ~(~A~). Did you mean ~(~A~)?"
                    operator type (similar-type type))))
@@ -135,7 +135,7 @@ SLOTS is an alist from names of slots to names of readers."
         if (hyphen-p element)
           do (when (or typed (atom tail) (hyphen-p (first tail)))
                (reject-clause operator list "each hyphen between a variable and its type"))
-             (warn-of-type operator (pop tail))
+             (warn-of-misspelled-type operator (pop tail))
              (setf typed t)
         else
           do (setf typed (lambda-keyword-p element))

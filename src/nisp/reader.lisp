@@ -7,7 +7,7 @@
 ;;; this package and slot accessors of ARS-MAGNA.SLOTS, so what is read works in any package.
 
 (defun delimiter-p (char)
-  (or (blank-p char)
+  (or (blank-character-p char)
       (multiple-value-bind (function non-terminating) (get-macro-character char)
         (and function (not non-terminating)))))
 
@@ -61,7 +61,7 @@ is a slot of the value before it."
     (unless *read-suppress*
       (unless (typep form '(cons symbol (cons symbol null)))
         (reject-syntax form "(TYPE slot) after !, as in !(PT x)"))
-      (typed-reader (first form) (second form)))))
+      (slot-reader-for-type (first form) (second form)))))
 
 (defun next-char-is (char stream)
   (eql char (peek-char nil stream nil nil t)))

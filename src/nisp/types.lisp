@@ -76,7 +76,7 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
 ;;; classes that users define need not be registered: all of their slots can be reached.
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
-  (define-function-class slot-accessor
+  (define-generic-function-class slot-accessor
     "The class of functions that read or set the slot of one name in objects of all types.")
 
   (defun slot-accessor-name (slot)
@@ -97,7 +97,7 @@ has the accessor's name."))
 
 ;;; Which slots there are.
 
-(defun class-slots (class)
+(defun class-slot-readers (class)
   "Return an alist from the names of the slots of CLASS to their readers. Inherited slots are last."
   (loop for class in (class-ancestors class)
         for type = (find-nisp-type (class-name class))
@@ -114,7 +114,7 @@ has the accessor's name."))
 
 (defun slot-names (object)
   "Return the names of the slots of OBJECT that programs can use, a list of strings."
-  (sort (remove-duplicates (append (mapcar #'car (class-slots (class-of object)))
+  (sort (remove-duplicates (append (mapcar #'car (class-slot-readers (class-of object)))
                                    (mapcar #'symbol-name (users-slot-names object)))
                            :test #'string=)
         #'string<))
@@ -148,11 +148,11 @@ has the accessor's name."))
           (nisp-type-slots type)
           (acons slot reader (remove slot (nisp-type-slots type) :key #'car :test #'string=)))))
 
-(defun typed-reader (type slot)
+(defun slot-reader-for-type (type slot)
   "Return the name of the accessor of SLOT for TYPE, or if there is none, of SLOT for all types."
   (let* ((known (find-nisp-type type))
          (class (and known (find-class (nisp-type-class known) nil))))
-    (or (and class (cdr (assoc (string slot) (class-slots class) :test #'string=)))
+    (or (and class (cdr (assoc (string slot) (class-slot-readers class) :test #'string=)))
         (ensure-slot-accessor slot))))
 
 (defmacro define-nisp-slot (type name reader &optional writer)

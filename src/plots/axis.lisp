@@ -59,7 +59,7 @@ pixels from the ends of this axis. INSET is reduced to a sixth of the axis if it
 
 ;;; Do the marks fit?
 
-(defun mark-width (mark) (lines-width (rest mark)))
+(defun mark-width (mark) (text-lines-width (rest mark)))
 
 (defun marks-width (axis)
   (reduce #'max (axis-marks axis) :key #'mark-width :initial-value 0))
@@ -85,7 +85,7 @@ does not show the scale, is used only if no candidate has two marks."
   "Return several lists of possible marks between START and END, the longest list first. The marks
 of a list are at least LEAST-MARK-STEP apart, and at most 10 of them are between LOW and HIGH."
   (loop for most in '(10 8 6 5 4 3 2 1)
-        for step = (max least-mark-step (round-step (- high low) most))
+        for step = (max least-mark-step (choose-round-step (- high low) most))
         collect (step-marks step start end percent)))
 
 (defun decade-marks (low high factors every)
@@ -131,7 +131,7 @@ as fit, each at least LEAST pixels wide. The extremes of VALUES are INSET pixels
     (let* ((low (if (<= 0 low (/ high 2)) 0 low))
            ;; 0 and 1 can be counts or shares.
            (least-mark-step (if (<= high 1) 0 (least-mark-step values percent)))
-           (step (max least-mark-step (round-step (- high low) 6)))
+           (step (max least-mark-step (choose-round-step (- high low) 6)))
            (low (multiple-below step low))
            (high (multiple-above step high)))
       (make-axis :low low :high high :marks (step-marks step low high percent)))))
@@ -161,7 +161,7 @@ FROM and may reach beyond the pixel TO."
   (let* ((count (max 1 (length words)))
          (across (horizontal-label-lines words (- (/ (- to from) count) 8)))
          (all (or across (mapcar (lambda (word) (wrap-text word +longest-vertical-text+)) words)))
-         (least (if across 0 (+ 1 (reduce #'max all :key #'lines-height :initial-value 0)))))
+         (least (if across 0 (+ 1 (reduce #'max all :key #'text-lines-height :initial-value 0)))))
     (make-axis :low -1/2 :high (- count 1/2) :from from :to (max to (+ from (* count least)))
                :marks (loop for lines in all for number from 0 collect (cons number lines))
                :upward-p (null across))))
@@ -169,7 +169,7 @@ FROM and may reach beyond the pixel TO."
 (defun marks-height (axis)
   (+ 8 (if (axis-upward-p axis)
            (marks-width axis)
-           (reduce #'max (axis-marks axis) :key (lambda (mark) (lines-height (rest mark)))
+           (reduce #'max (axis-marks axis) :key (lambda (mark) (text-lines-height (rest mark)))
                                            :initial-value 0))))
 
 (defun draw-x-axis-marks (canvas axis y)
@@ -178,5 +178,5 @@ FROM and may reach beyond the pixel TO."
         do (with-ink (+axis-color+)
              (draw-line canvas draw-gcontext* x y x (+ y 4)))
            (if (axis-upward-p axis)
-               (write-vertical-lines canvas x (+ y 8) lines)
-               (write-lines canvas x (+ y 17) lines :anchor :middle))))
+               (draw-vertical-text-lines canvas x (+ y 8) lines)
+               (draw-text-lines canvas x (+ y 17) lines :anchor :middle))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.plots)
 
-(export '(figure-text decimal-exponent decimal-text strip-trailing-zeros))
+(export '(rounded-number-text decimal-exponent decimal-text strip-trailing-zeros))
 
 ;;; Internally all numbers are rationals. So numbers of any size do not overflow, and the same data
 ;;; give the same picture to the last byte.
@@ -57,7 +57,7 @@
                 (strip-trailing-zeros (decimal-text (/ value (expt 10 power)) (1- digits)))
                 power))))
 
-(defun figure-text (value &key (percent nil) (digits 4))
+(defun rounded-number-text (value &key (percent nil) (digits 4))
   "Return the text of the number VALUE with DIGITS significant digits, as per cent if PERCENT: 0.3,
 12.5 %, 1.5e9. For NIL return a dash. Signals WRONG-ARGUMENT."
   (let ((value (as-rational value)))
@@ -67,7 +67,7 @@
 
 ;;; Round numbers along an axis.
 
-(defun round-step (span most)
+(defun choose-round-step (span most)
   "Return the least step, 10^n, 2*10^n or 5*10^n, that divides SPAN into at most MOST parts."
   (let ((least (/ span most)))
     (loop for power from (decimal-exponent least)

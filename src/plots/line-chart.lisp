@@ -99,7 +99,7 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
 
 ;;; Words along the axis across are replaced by numbers.
 
-(defun words-to-positions (series words)
+(defun replace-words-by-positions (series words)
   "Return copies of SERIES in which each X, a word, is replaced by its position in WORDS."
   (loop for one in series
         for points = (loop for point in (series-points one)
@@ -109,10 +109,10 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
         collect (make-series (series-name one) (series-index one) points)))
 
 (defun point-tooltip (series point words percent)
-  (flet ((text (value) (figure-text value :percent percent)))
+  (flet ((text (value) (rounded-number-text value :percent percent)))
     (format nil "~@[~A, ~]~A: ~A~:[~;~:* (~A to ~A)~]"
             (and (string/= "" (series-name series)) (series-name series))
-            (if words (elt words (point-x point)) (figure-text (point-x point)))
+            (if words (elt words (point-x point)) (rounded-number-text (point-x point)))
             (text (point-y point))
             (and (point-low point) (point-high point) (text (point-low point)))
             (and (point-high point) (text (point-high point))))))
@@ -193,7 +193,7 @@ names are NIL, there is no legend. Signals WRONG-ARGUMENT."
   (multiple-value-bind (checked any-x-word-p) (checked-series series)
     (let* ((values (all-x checked))
            (words (and any-x-word-p values))
-           (all (if any-x-word-p (words-to-positions checked words) checked))
+           (all (if any-x-word-p (replace-words-by-positions checked words) checked))
            (upward (numeric-y-axis (all-y all) percent
                                    (mapcar #'as-rational (or range (and percent '(0 1))))))
            (plot (lay-out-line-chart all words values log-x upward options)))

@@ -93,7 +93,7 @@
   (typecase name
     (null "")
     (symbol (string-downcase name))
-    (real (figure-text name))
+    (real (rounded-number-text name))
     (t (string name))))
 
 (defun split-text (text separator-p)
@@ -149,22 +149,22 @@ between words. A word longer than a line is broken after a dash or the like, els
        (loop for paragraph in (split-text text (lambda (character) (char= #\Newline character)))
              append (wrap-words (split-text paragraph #'space-p) width size bold-p))))
 
-(defun lines-width (lines &optional (size +text-size+) bold-p)
+(defun text-lines-width (lines &optional (size +text-size+) bold-p)
   "Return the width of the longest of LINES, in pixels."
   (reduce #'max lines :key (lambda (line) (text-width line size bold-p)) :initial-value 0))
 
-(defun lines-height (lines) (* +chart-line-height+ (length lines)))
+(defun text-lines-height (lines) (* +chart-line-height+ (length lines)))
 
-(defun write-lines (canvas x y lines &key (anchor :start) (color +text-color+)
-                                       (size +text-size+) bold-p
-                                       (step +chart-line-height+))
+(defun draw-text-lines (canvas x y lines &key (anchor :start) (color +text-color+)
+                                           (size +text-size+) bold-p
+                                           (step +chart-line-height+))
   "Write LINES of text from the base line Y down. Return the base line for the next line."
   (with-ink (color)
     (dolist (line lines y)
       (draw-words canvas draw-gcontext* x y line :anchor anchor :size size :bold-p bold-p)
       (incf y step))))
 
-(defun write-vertical-lines (canvas x y lines)
+(defun draw-vertical-text-lines (canvas x y lines)
   "Write LINES as vertical text, side by side around X. The texts end at Y."
   (with-ink (+text-color+)
     (loop for line in lines
@@ -189,12 +189,12 @@ between words. A word longer than a line is broken after a dash or the like, els
     (list (wrap-text title room :size 15 :bold-p t) (wrap-text subtitle room))))
 
 (defun heading-bottom (heading)
-  (+ +margin+ (* 19 (length (first heading))) (lines-height (second heading))))
+  (+ +margin+ (* 19 (length (first heading))) (text-lines-height (second heading))))
 
 (defun draw-heading (canvas heading)
   (destructuring-bind (title subtitle) heading
-    (let ((y (write-lines canvas +margin+ (+ +margin+ 13) title :size 15 :step 19 :bold-p t)))
-      (write-lines canvas +margin+ (- y 2) subtitle :color +faint-text-color+))))
+    (let ((y (draw-text-lines canvas +margin+ (+ +margin+ 13) title :size 15 :step 19 :bold-p t)))
+      (draw-text-lines canvas +margin+ (- y 2) subtitle :color +faint-text-color+))))
 
 (defun save-chart (file chart)
   "Save CHART, an SVG document from a function such as LINE-CHART, in FILE, replacing it. Return the

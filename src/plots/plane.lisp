@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.plots)
 
-(defconstant +sample-width+ 30 "The width of the sample of a series, in pixels.")
+(defconstant +legend-sample-width+ 30 "The width of the sample of a series, in pixels.")
 (defconstant +legend-entry-gap+ 6 "The gap between entries of the legend, in pixels.")
 
 (defstruct (legend (:copier nil))
@@ -16,44 +16,44 @@ line...). If CONNECT is true, the samples of series show lines."
 
 (defun legend-title-height (title)
   "Return the height, in pixels, of TITLE, a list of lines of text above the entries of a legend."
-  (if title (+ +legend-entry-gap+ (lines-height title)) 0))
+  (if title (+ +legend-entry-gap+ (text-lines-height title)) 0))
 
 (defun lay-out-legend (names title most connect)
   "Return the legend for series with NAMES, below TITLE, a string or NIL, and at most MOST pixels
 wide. If all names are empty, the legend is empty. If CONNECT, the samples show lines."
   (if (every (lambda (name) (string= "" name)) names)
       (make-legend)
-      (let* ((room (- most +sample-width+ 24))
+      (let* ((room (- most +legend-sample-width+ 24))
              (title (wrap-text title (- most 24) :bold-p t))
              (entries (loop for name in names
                             for index from 0
                             collect (cons index (wrap-text name room)))))
         (make-legend :title title :entries entries :connect connect
-                     :width (max (+ 24 (lines-width title +text-size+ t))
-                                 (+ +sample-width+ 24
+                     :width (max (+ 24 (text-lines-width title +text-size+ t))
+                                 (+ +legend-sample-width+ 24
                                     (reduce #'max entries :key (lambda (entry)
-                                                                 (lines-width (rest entry))))))
+                                                                 (text-lines-width (rest entry))))))
                      :height (+ (legend-title-height title)
                                 (loop for (nil . lines) in entries
                                       sum (+ +legend-entry-gap+
-                                           (lines-height (or lines '(""))))))))))
+                                           (text-lines-height (or lines '(""))))))))))
 
-(defun draw-sample (canvas index x y connect)
+(defun draw-legend-sample (canvas index x y connect)
   (when connect
     (with-series-look (index 1.8)
-      (draw-line canvas draw-gcontext* x y (+ x +sample-width+) y)))
-  (draw-marker canvas index (+ x (/ +sample-width+ 2)) y))
+      (draw-line canvas draw-gcontext* x y (+ x +legend-sample-width+) y)))
+  (draw-marker canvas index (+ x (/ +legend-sample-width+ 2)) y))
 
 (defun draw-legend (canvas legend x y)
-  (write-lines canvas (+ x 16) (+ y 10) (legend-title legend) :bold-p t)
+  (draw-text-lines canvas (+ x 16) (+ y 10) (legend-title legend) :bold-p t)
   (incf y (legend-title-height (legend-title legend)))
   (loop for (index . lines) in (legend-entries legend)
-        do (draw-sample canvas index (+ x 16) (+ y 6) (legend-connect legend))
-           (write-lines canvas (+ x 16 +sample-width+ 8) (+ y 10) lines)
-           (incf y (+ +legend-entry-gap+ (lines-height (or lines '("")))))))
+        do (draw-legend-sample canvas index (+ x 16) (+ y 6) (legend-connect legend))
+           (draw-text-lines canvas (+ x 16 +legend-sample-width+ 8) (+ y 10) lines)
+           (incf y (+ +legend-entry-gap+ (text-lines-height (or lines '("")))))))
 
-(defconstant +least-height+ 170 "The least height of the area for the data, in pixels.")
-(defconstant +least-width+ 200 "The least width of the area for the data, in pixels.")
+(defconstant +least-data-area-height+ 170 "The least height of the area for the data, in pixels.")
+(defconstant +least-data-area-width+ 200 "The least width of the area for the data, in pixels.")
 
 (defstruct (page (:copier nil))
   "The layout of a chart. X-AXIS is the horizontal axis. LEFT, RIGHT, TOP and BOTTOM are the edges
@@ -78,14 +78,14 @@ grows beyond WIDTH and HEIGHT if necessary."
   (let* ((heading (lay-out-heading title subtitle width))
          (legend (lay-out-legend names legend-title (* 4/10 width) connect))
          (y-lines (wrap-text y-label (- width (* 2 +margin+))))
-         (top (+ (heading-bottom heading) 14 (lines-height y-lines) (if y-lines 8 0)))
+         (top (+ (heading-bottom heading) 14 (text-lines-height y-lines) (if y-lines 8 0)))
          (left (max least-left (+ +margin+ (marks-width upward) 8)))
          (right (- width +margin+ (max 16 (legend-width legend))))
-         (across (funcall make-across left (max right (+ left +least-width+))))
+         (across (funcall make-across left (max right (+ left +least-data-area-width+))))
          (right (axis-to across))
          (x-lines (wrap-text x-label (- right left)))
-         (low (+ (marks-height across) (lines-height x-lines) (if x-lines 6 0)))
-         (bottom (max (- height +margin+ low extra) (+ top +least-height+)
+         (low (+ (marks-height across) (text-lines-height x-lines) (if x-lines 6 0)))
+         (bottom (max (- height +margin+ low extra) (+ top +least-data-area-height+)
                       (+ top (legend-height legend)))))
     (setf (axis-from upward) bottom (axis-to upward) top)
     (make-plot :heading heading :legend legend :x-axis across :y-axis upward
@@ -100,24 +100,24 @@ grows beyond WIDTH and HEIGHT if necessary."
         for y = (axis-pixel value (plot-y-axis plot))
         do (with-ink (+grid-color+)
              (draw-line canvas draw-gcontext* left y (plot-right plot) y))
-           (write-lines canvas (- left 8) (+ y 4) lines :anchor :end)))
+           (draw-text-lines canvas (- left 8) (+ y 4) lines :anchor :end)))
 
-(defun draw-no-data (canvas page)
-  (write-lines canvas (/ (+ (page-left page) (page-right page)) 2)
-               (/ (+ (page-top page) (page-bottom page)) 2) '("no data")
-               :anchor :middle :color +faint-text-color+))
+(defun draw-no-data-text (canvas page)
+  (draw-text-lines canvas (/ (+ (page-left page) (page-right page)) 2)
+                   (/ (+ (page-top page) (page-bottom page)) 2) '("no data")
+                   :anchor :middle :color +faint-text-color+))
 
 (defun draw-x-axis (canvas page)
   (let ((across (page-x-axis page)) (bottom (page-bottom page)))
     (draw-x-axis-marks canvas across bottom)
-    (write-lines canvas (/ (+ (page-left page) (page-right page)) 2)
-                 (+ bottom (marks-height across) 15) (page-x-lines page) :anchor :middle)))
+    (draw-text-lines canvas (/ (+ (page-left page) (page-right page)) 2)
+                     (+ bottom (marks-height across) 15) (page-x-lines page) :anchor :middle)))
 
 (defun draw-plot (canvas plot)
   (let ((left (plot-left plot)) (top (plot-top plot)) (right (plot-right plot))
         (bottom (plot-bottom plot)))
-    (write-lines canvas +margin+ (- top 2 (lines-height (plot-y-lines plot)))
-                 (plot-y-lines plot))
+    (draw-text-lines canvas +margin+ (- top 2 (text-lines-height (plot-y-lines plot)))
+                     (plot-y-lines plot))
     (draw-y-axis canvas plot)
     (with-ink (+axis-color+ 1.2)
       (draw-lines canvas draw-gcontext* (list left top left bottom right bottom)))
@@ -137,4 +137,4 @@ grows beyond WIDTH and HEIGHT if necessary."
 data; else the chart has the text \"no data\"."
   (page-svg plot (lambda (canvas)
                    (draw-plot canvas plot)
-                   (if data-p (funcall draw-data canvas) (draw-no-data canvas plot)))))
+                   (if data-p (funcall draw-data canvas) (draw-no-data-text canvas plot)))))

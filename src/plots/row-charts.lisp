@@ -18,7 +18,7 @@
   (let ((label (wrap-text label (* 32/100 width)))
         (words (loop for text in words append (wrap-text text (* 34/100 width)))))
     (make-row label words
-              (+ 8 (max least (lines-height label) (lines-height words))))))
+              (+ 8 (max least (text-lines-height label) (text-lines-height words))))))
 
 (defstruct (table (:include page) (:copier nil))
   "A page whose data are rows below each other, each with a label and texts."
@@ -37,13 +37,13 @@ VALUES. Each row is at least LEAST pixels high. The page becomes wider than WIDT
   (check-chart-size width 440)
   (flet ((widest (reader rows)
            (reduce #'max rows :initial-value 0
-                              :key (lambda (row) (lines-width (funcall reader row))))))
+                              :key (lambda (row) (text-lines-width (funcall reader row))))))
     (let* ((heading (lay-out-heading title subtitle width))
            (rows (loop for (label . words) in entries
                        collect (lay-out-row label words width least)))
            (left (+ +margin+ (widest #'row-label rows) 12))
            (words-width (widest #'row-words rows))
-           (right (max (+ left +least-width+)
+           (right (max (+ left +least-data-area-width+)
                        (- width +margin+ (if (plusp words-width) (+ 14 words-width) 16))))
            (across (numeric-x-axis values left right log-x :percent percent))
            (top (+ (heading-bottom heading) 12))
@@ -53,12 +53,12 @@ VALUES. Each row is at least LEAST pixels high. The page becomes wider than WIDT
       (make-table :heading heading :x-axis across :rows rows :x-lines x-lines
                   :left left :right right :top top :bottom bottom
                   :width (ceiling (+ right (max 16 (+ 14 words-width)) +margin+))
-                  :height (ceiling (+ bottom (marks-height across) 6 (lines-height x-lines)
+                  :height (ceiling (+ bottom (marks-height across) 6 (text-lines-height x-lines)
                                       +margin+))))))
 
-(defun write-beside-row (canvas x row lines anchor)
-  (write-lines canvas x (+ 12 (- (row-middle row) (/ (lines-height lines) 2))) lines
-               :anchor anchor))
+(defun draw-text-beside-row (canvas x row lines anchor)
+  (draw-text-lines canvas x (+ 12 (- (row-middle row) (/ (text-lines-height lines) 2))) lines
+                   :anchor anchor))
 
 (defun draw-table (canvas table draw-row)
   "Draw TABLE. For each row, call DRAW-ROW with CANVAS, the row and its number, to draw the data."
@@ -73,10 +73,10 @@ VALUES. Each row is at least LEAST pixels high. The page becomes wider than WIDT
     (draw-x-axis canvas table)
     (loop for row in (table-rows table)
           for number from 0
-          do (write-beside-row canvas (- left 12) row (row-label row) :end)
-             (write-beside-row canvas (+ right 14) row (row-words row) :start)
+          do (draw-text-beside-row canvas (- left 12) row (row-label row) :end)
+             (draw-text-beside-row canvas (+ right 14) row (row-words row) :start)
              (funcall draw-row canvas row number))
-    (unless (table-rows table) (draw-no-data canvas table))))
+    (unless (table-rows table) (draw-no-data-text canvas table))))
 
 (defun table-svg (table draw-row)
   (page-svg table (lambda (canvas) (draw-table canvas table draw-row))))
@@ -93,7 +93,7 @@ high words); all but the label may be NIL."
 
 (defun signed-number-text (value percent)
   (concatenate 'string (if (and value (plusp value)) "+" "")
-               (figure-text value :percent percent :digits 3)))
+               (rounded-number-text value :percent percent :digits 3)))
 
 (defun interval-text (value low high text)
   "Return a text of VALUE and its interval from LOW to HIGH. The function TEXT formats a number."
@@ -146,8 +146,8 @@ shown as per cent. The other arguments are those of LINE-CHART. Signals WRONG-AR
 
 ;;; The numbers of a group are a histogram with columns of four pixels, whether ten or ten thousand.
 
-(defconstant +column-width+ 4 "The width of a column of a histogram, in pixels.")
-(defconstant +column-height+ 28 "The height of the highest column of a group, in pixels.")
+(defconstant +histogram-column-width+ 4 "The width of a column of a histogram, in pixels.")
+(defconstant +histogram-column-height+ 28 "The height of the highest column of a group, in pixels.")
 
 (defun checked-group (row)
   "Check ROW, one of the ROWS of MEASURE-CHART. Return a list (label numbers middle low high)."
@@ -163,7 +163,8 @@ shown as per cent. The other arguments are those of LINE-CHART. Signals WRONG-AR
   (destructuring-bind (label numbers middle low high) group
     (list label
           (and middle
-               (format nil "~A ~A" middle-label (interval-text middle low high #'figure-text)))
+               (format nil "~A ~A" middle-label
+                       (interval-text middle low high #'rounded-number-text)))
           (format nil "n = ~D" (length numbers)))))
 
 (defun histogram-columns (numbers axis)
@@ -171,7 +172,7 @@ shown as per cent. The other arguments are those of LINE-CHART. Signals WRONG-AR
 count of NUMBERS in each column."
   (let ((counts (make-hash-table)))
     (dolist (number numbers)
-      (incf (gethash (floor (- (axis-pixel number axis) (axis-from axis)) +column-width+)
+      (incf (gethash (floor (- (axis-pixel number axis) (axis-from axis)) +histogram-column-width+)
                      counts 0)))
     (sort (loop for column being the hash-keys of counts using (hash-value count)
                 collect (cons column count))
@@ -182,10 +183,10 @@ count of NUMBERS in each column."
          (most (reduce #'max columns :key #'cdr :initial-value 1)))
     (with-ink (#x8FB3CC)
       (loop for (column . count) in columns
-            for height = (max 2 (* +column-height+ (/ count most)))
+            for height = (max 2 (* +histogram-column-height+ (/ count most)))
             do (draw-rectangle canvas draw-gcontext*
-                               (+ (axis-from axis) (* column +column-width+)) (- y height)
-                               (- +column-width+ 1/2) height t)))
+                               (+ (axis-from axis) (* column +histogram-column-width+)) (- y height)
+                               (- +histogram-column-width+ 1/2) height t)))
     (with-ink (#x9A9A9A)
       (draw-line canvas draw-gcontext* (axis-from axis) y (axis-to axis) y))))
 
@@ -208,7 +209,7 @@ is logarithmic if LOG-X. The other arguments are those of LINE-CHART. Signals WR
                                      append (remove nil (cddr group))
                                      append (second group))
                                :title title :subtitle subtitle :x-label x-label :width width
-                               :least (+ +column-height+ 20) :log-x log-x)))
+                               :least (+ +histogram-column-height+ 20) :log-x log-x)))
     (table-svg table
                (lambda (canvas row number)
                  (draw-group canvas (elt groups number) row (table-x-axis table))))))

@@ -49,7 +49,7 @@ its time on. CENSORED are the times of censored trials, TIMES the times at which
 (defun step-at (time curve)
   (find time (curve-steps curve) :key #'first :test #'>= :from-end t))
 
-(defun has-data-p (curve)
+(defun curve-has-data-p (curve)
   (or (rest (curve-steps curve)) (curve-censored curve) (curve-times curve)))
 
 (defun count-at-risk (time curve)
@@ -90,7 +90,7 @@ interval. END is the time until which the last of these steps is valid."
                                    (reverse-points (step-line-points steps end #'fourth plot)))
                            :fill-p t)))))
 
-(defun draw-censored (canvas curve plot)
+(defun draw-censoring-marks (canvas curve plot)
   "Draw a short vertical line for each censored trial in CURVE, at most one line for each pixel."
   (let ((places (remove-duplicates
                  (loop for time in (remove-duplicates (curve-censored curve))
@@ -112,32 +112,33 @@ interval. END is the time until which the last of these steps is valid."
                         (axis-pixel (second (step-at time curve)) (plot-y-axis plot)))))
 
 (defun draw-curves (canvas curves plot)
-  (let ((known (remove-if-not #'has-data-p curves)))
+  (let ((known (remove-if-not #'curve-has-data-p curves)))
     (dolist (curve known) (draw-confidence-bands canvas curve plot))
     (dolist (curve known)
       (with-series-look ((curve-index curve) 1.8)
         (draw-lines canvas draw-gcontext*
                     (step-line-points (curve-steps curve) (curve-end curve) #'second plot)))
-      (draw-censored canvas curve plot))
+      (draw-censoring-marks canvas curve plot))
     (dolist (curve known) (draw-markers-along canvas curve curves plot))))
 
 ;;; Below: the numbers at risk.
 
 (defun risk-count-width (curves)
-  (text-width (figure-text (reduce #'max curves :key (lambda (curve) (length (curve-times curve)))
-                                                :initial-value 0))
+  (text-width (rounded-number-text (reduce #'max curves :key
+                                           (lambda (curve) (length (curve-times curve)))
+                                                        :initial-value 0))
               +text-size+))
 
 (defun draw-risk-counts (canvas curves plot label)
   (let ((y (+ (plot-below plot) 20)))
-    (write-lines canvas +margin+ y (list label) :color +faint-text-color+)
+    (draw-text-lines canvas +margin+ y (list label) :color +faint-text-color+)
     (dolist (curve curves)
       (incf y +chart-line-height+)
-      (draw-sample canvas (curve-index curve) +margin+ (- y 4) t)
+      (draw-legend-sample canvas (curve-index curve) +margin+ (- y 4) t)
       (dolist (mark (axis-marks (plot-x-axis plot)))
-        (write-lines canvas (axis-pixel (first mark) (plot-x-axis plot)) y
-                     (list (format nil "~D" (count-at-risk (first mark) curve)))
-                     :anchor :middle)))))
+        (draw-text-lines canvas (axis-pixel (first mark) (plot-x-axis plot)) y
+                         (list (format nil "~D" (count-at-risk (first mark) curve)))
+                         :anchor :middle)))))
 
 (defun survival-chart (curves &rest options
                        &key (risk-label "still there") title subtitle x-label y-label legend-title
@@ -157,14 +158,16 @@ the heading RISK-LABEL. The other arguments are those of LINE-CHART. Signals WRO
                          (numeric-x-axis ends from to nil
                                          :least (risk-count-width curves) :inset 8))
                        (numeric-y-axis '() t '(0 1))
-                       (mapcar (lambda (curve) (legend-label (curve-name curve) (has-data-p curve)))
+                       (mapcar (lambda (curve)
+                                 (legend-label (curve-name curve) (curve-has-data-p curve)))
                                curves)
                        :extra (if (some #'curve-times curves)
                                   (+ 10 (* +chart-line-height+ (1+ (length curves))))
                                   0)
-                       :least-left (+ +margin+ +sample-width+ 14 (/ (risk-count-width curves) 2))
+                       :least-left (+ +margin+ +legend-sample-width+ 14
+                                      (/ (risk-count-width curves) 2))
                        options)))
-    (plot-svg plot (some #'has-data-p curves)
+    (plot-svg plot (some #'curve-has-data-p curves)
                (lambda (canvas)
                  (draw-curves canvas curves plot)
                  (when (some #'curve-times curves)

@@ -128,7 +128,7 @@ INITARG. PARSE-CAMERA is such a function for cameras."
 (defun read-blueprint (name environment position angle lists)
   "Return a blueprint. LISTS is a property list of options in *PART-OPTIONS* and their values."
   (flet ((reject (clause expected)
-           (reject-clause (title "defrobot" name) clause expected)))
+           (reject-clause (definition-title "defrobot" name) clause expected)))
     (let ((map (parse-start environment position angle #'reject)))
       (make-blueprint :name name :map (map-name map)
                       :x (double (first position)) :y (double (second position))
@@ -143,13 +143,13 @@ INITARG. PARSE-CAMERA is such a function for cameras."
   "Define a robot as DEFROBOT does, but with evaluated arguments. ENVIRONMENT is a map or its name,
 POSITION a list (x y), CAMERAS a list of lists (fov resolution), and PARTS a list of lists (kind
 initarg value ...). Return the robot."
-  (check-robot-name (title "defrobot" name) name)
+  (check-robot-name (definition-title "defrobot" name) name)
   (check-robot-variable name)
   (let* ((blueprint (read-blueprint name environment position angle
                                     (list :cameras cameras :hands hands :bins bins :parts parts)))
          (robot (ensure-resident-robot blueprint)))
     (register *robots* name blueprint :variable t :value robot)
-    (warn-of-angle (title "defrobot" name) (robot-world robot) angle)
+    (warn-of-angle-in-degrees (definition-title "defrobot" name) (robot-world robot) angle)
     robot))
 
 (defun check-robot-name (definition name)
@@ -166,7 +166,7 @@ initarg value ...). Return the robot."
 (defun check-robot-variable (name)
   (when (and (null (definition-to-replace name *robots*))
              (variable-in-use-p name))
-    (reject-clause (title "defrobot" name) name
+    (reject-clause (definition-title "defrobot" name) name
                    (format nil "a name whose variable is free; ~A has the value ~S"
                            name (symbol-value name)))))
 
@@ -195,7 +195,7 @@ MALFORMED-DEFINITION if FORM signals an error."
     (flet ((value-of (form clause)
              (value-form definition form clause "a form that has a value")))
       `((define-robot ',name
-          ,(value-form definition (map-form environment lisp-environment) start
+          ,(value-form definition (map-reference-form environment lisp-environment) start
                        "a map, its name, or a form whose value is one")
           (list ,(value-of x (second start)) ,(value-of y (second start)))
           ,(value-of angle start)
@@ -219,7 +219,7 @@ NAME becomes a special variable bound to the robot. The robot stands in the resi
 map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are
 evaluated. An earlier robot named NAME takes no more commands. Signals MALFORMED-DEFINITION (manual
 5.2). See reading 9."
-  (let ((definition (title "defrobot" name)))
+  (let ((definition (definition-title "defrobot" name)))
     (expand-definition form environment
                        (lambda ()
                          (check-robot-form definition name start options)

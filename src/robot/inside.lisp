@@ -3,7 +3,7 @@
 (in-package :ars-magna.robot)
 
 (export '(outer-location part-in-bin part-reaches-p part-reaches-bin-p set-down
-          move-part outer-enclosure enforce-containment))
+          move-part location-after-removal enforce-containment))
 
 ;;; A hand or camera is in the open with its robot (location NIL), inside a thing, or inside one of
 ;;; the robot's storage bins. What a hand holds is where the hand is. Invariants:
@@ -78,7 +78,7 @@ PART holds moves along, and a track of PART is lost. Warnings are queued."
     (setf (part-location part) location)
     (update-after-part-move part old)))
 
-(defun outer-enclosure (part)
+(defun location-after-removal (part)
   "Return the location of PART after it is taken out of its container."
   (let* ((location (part-location part))
          (space (and (thing-p location) (thing-enclosure location))))

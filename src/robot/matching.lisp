@@ -150,7 +150,7 @@ when LOW is NIL, one of CHOICES."
                                   (ensure-list (second form))))))
     (when form
       (format nil "not ~(~S~)~@[, because the values are ~(~A~)~]~@[; did you mean ~(~A~)?~]"
-              (abridged form) domain (and value (value-like value domain))))))
+              (abridged form) domain (and value (similar-domain-value value domain))))))
 
 ;;; Fitting.
 
@@ -170,7 +170,7 @@ when LOW is NIL, one of CHOICES."
 (defun thing-map (thing)
   (world-map (thing-world thing)))
 
-(defun reading-with-asked-symbols (demand reading thing)
+(defun reading-with-demand-symbols (demand reading thing)
   "READING of THING fits DEMAND. Return it with symbols of DEMAND or else of the map's package."
   (flet ((asked (value)
            (or (find value (demand-choices demand) :test #'value-equal)
@@ -196,7 +196,7 @@ readings, an object descriptor (reading 127)."
         (unless (or value (null attribute) (can-be-false-p attribute)) (return nil))
         (let ((reading (read-attribute attribute value distance dice)))
           (unless (reading-fits-p demand reading) (return nil))
-          (push (list key (reading-with-asked-symbols demand reading thing)) readings))))))
+          (push (list key (reading-with-demand-symbols demand reading thing)) readings))))))
 
 ;;; Attributes noticed in addition.
 

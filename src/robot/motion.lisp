@@ -151,8 +151,8 @@ metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL (reading 
 
 ;;; The heading, the pose and the speed.
 
-(declaim (inline heading-component))
-(defun heading-component (number)
+(declaim (inline snap-heading-component))
+(defun snap-heading-component (number)
   "Return NUMBER, a component of a heading, or 0 if NUMBER is as small as a rounding error. So a
 robot can drive along the border of two cells and stay in one cell."
   (declare (type double-float number))
@@ -166,8 +166,8 @@ robot can drive along the border of two cells and stay in one cell."
           when (and designator (designator-bearing-p designator))
             do (decf (designator-angle designator) (- angle (robot-angle robot))))
     (setf (robot-angle robot) angle
-          (robot-cos robot) (heading-component (cosine angle))
-          (robot-sin robot) (heading-component (sine angle))))
+          (robot-cos robot) (snap-heading-component (cosine angle))
+          (robot-sin robot) (snap-heading-component (sine angle))))
   robot)
 
 (defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))
@@ -232,12 +232,12 @@ robot can drive along the border of two cells and stay in one cell."
   "Add a distance from LOW to HIGH metres, negative if backwards, to the odometers of ROBOT."
   (declare #.*hot* (type robot robot) (type double-float low high))
   (dolist (odometer (robot-odometer-list robot))
-    (odometer-drive odometer low high))
+    (add-drive-to-odometer odometer low high))
   (let ((estimate (* 0.5d0 (+ low high))))
     (incf (robot-estimate-x robot) (* estimate (robot-cos robot)))
     (incf (robot-estimate-y robot) (* estimate (robot-sin robot)))))
 
-(defun drive-tick (robot &optional (limit +endless+))
+(defun drive-tick (robot &optional (limit +infinite-distance+))
   "Drive ROBOT for one tick at its speed, but not by more than LIMIT metres apart from noise;
 backwards if LIMIT is negative. Return the obstacle, :WALL or :THING, if ROBOT was blocked, else
 NIL. The distance is uniformly distributed within MOTION-NOISE* of the speed; the odometers read an
@@ -279,5 +279,5 @@ ROBOT-TURNED-LOW and ROBOT-TURNED-HIGH."
     (setf (robot-turned-low robot) low
           (robot-turned-high robot) high)
     (dolist (odometer (robot-odometer-list robot))
-      (odometer-turn odometer low high)))
+      (add-turn-to-odometer odometer low high)))
   robot)

@@ -65,7 +65,7 @@ in metres, and the heading in radians. Only displays use this position; robots c
                     (ceiling (/ gap 2pi)))))
     (<= (+ angle (* turns 2pi)) high)))
 
-(defun refresh-bounds (odometer)
+(defun refresh-direction-bounds (odometer)
   (declare #.*hot* (type odometer odometer))
   (let ((low (odometer-angle-min odometer))
         (high (odometer-angle-max odometer))
@@ -79,7 +79,7 @@ in metres, and the heading in radians. Only displays use this position; robots c
             (values (odometer-sin-min odometer) (odometer-sin-max odometer))
             (bounds (sine low) (sine high) (/ pi 2) (/ pi -2))))))
 
-(declaim (inline rounding-bound odometer-drive))
+(declaim (inline rounding-bound add-drive-to-odometer))
 (defun rounding-bound (value)
   "Return an upper bound for the rounding error in a sum whose result is VALUE."
   (declare (type double-float value))
@@ -91,7 +91,7 @@ in metres, and the heading in radians. Only displays use this position; robots c
      (let ((sum (+ ,low-place ,low))) (setf ,low-place (- sum (rounding-bound sum))))
      (let ((sum (+ ,high-place ,high))) (setf ,high-place (+ sum (rounding-bound sum))))))
 
-(defun odometer-drive (odometer low high)
+(defun add-drive-to-odometer (odometer low high)
   "Add a drive of LOW to HIGH metres along the heading to ODOMETER. For a drive backwards, LOW and
 HIGH are negative (reading 97)."
   (declare (type odometer odometer) (type double-float low high))
@@ -109,10 +109,10 @@ HIGH are negative (reading 97)."
           (count-by cos-max cos-min sin-max sin-min)
           (count-by cos-min cos-max sin-min sin-max)))))
 
-(defun odometer-turn (odometer low high)
+(defun add-turn-to-odometer (odometer low high)
   (declare (type double-float low high))
   (widen-interval (odometer-angle-min odometer) low (odometer-angle-max odometer) high)
-  (refresh-bounds odometer))
+  (refresh-direction-bounds odometer))
 
 ;;; Functions for programs.
 
@@ -131,7 +131,7 @@ HIGH are negative (reading 97)."
                   (odometer-origin-y odometer) (robot-y robot)))
       (:ang (setf (odometer-angle-min odometer) 0d0 (odometer-angle-max odometer) 0d0
                   (odometer-origin-angle odometer) (robot-angle robot))
-       (refresh-bounds odometer)))))
+       (refresh-direction-bounds odometer)))))
 
 (public get-odometer-pos)
 (defun get-odometer-pos (odometer &optional interval)

@@ -86,7 +86,7 @@ destroyed: it no longer changes (manual 3.2.2)."
 
 (define-operator 'make-odometer '(robot name) #'make-odometer)
 
-(defun reset-by-program (odometer part)
+(defun reset-odometer-for-program (odometer part)
   "Reset PART of ODOMETER and return ODOMETER. Journal the reset unless ODOMETER is destroyed."
   (let ((robot (odometer-robot odometer)) (name (odometer-name odometer)))
     (if (eq odometer (robot-odometer robot name))
@@ -99,19 +99,19 @@ destroyed: it no longer changes (manual 3.2.2)."
 (define-operator 'reset-odometer '(robot name odometer-part)
   (lambda (robot name part)
     (let ((odometer (robot-odometer robot name)))
-      (when odometer (reset-by-program odometer part)))))
+      (when odometer (reset-odometer-for-program odometer part)))))
 
 (public reset-odometer-pos)
 (defun reset-odometer-pos (odometer)
   "Reset the position of ODOMETER to (0,0). Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer-pos)
-  (reset-by-program odometer :pos))
+  (reset-odometer-for-program odometer :pos))
 
 (public reset-odometer-ang)
 (defun reset-odometer-ang (odometer)
   "Reset the angle of ODOMETER to 0 at the present heading. Return ODOMETER (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer-ang)
-  (reset-by-program odometer :ang))
+  (reset-odometer-for-program odometer :ang))
 
 (public reset-odometer)
 (defun reset-odometer (odometer)
@@ -128,7 +128,7 @@ WRONG-ARGUMENT (manual E). See reading 114."
   (check-argument-type 'place-robot 'x x 'number)
   (check-argument-type 'place-robot 'y y 'number)
   (check-argument-type 'place-robot 'angle angle 'angle)
-  (warn-of-angle 'place-robot (robot-world robot) angle)
+  (warn-of-angle-in-degrees 'place-robot (robot-world robot) angle)
   (let ((map (world-map (robot-world robot))))
     (unless (map-index map x y)
       (reject-argument "pos" "position" (list x y)

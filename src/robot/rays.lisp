@@ -35,8 +35,9 @@ Return the point beyond the corner, as two values, or NIL if the ray has ended."
                  (let ((flag (aref flags index)))
                    (or (and (logtest flag +opaque+)
                             (setf (values beyond-x beyond-y)
-                                  (line-past-corner world +opaque+ (+ x (* dx at)) (+ y (* dy at))
-                                                    dx dy)))
+                                  (line-point-beyond-corner world +opaque+ (+ x (* dx at))
+                                                            (+ y (* dy at))
+                                                            dx dy)))
                        (funcall visit index flag))))
                (map-width map) (map-height map) x y dx dy +no-limit+)
     (values beyond-x beyond-y)))
@@ -59,7 +60,7 @@ the two cells beside the corner, if one of these cells lets the ray through (rea
   "If an opaque cell stops a ray in direction (DX,DY) at (X,Y), but the ray only touches a corner
 there, continue the ray. Return a list of the cells with things that the continued ray meets."
   (let ((cells '()))
-    (multiple-value-bind (beyond-x beyond-y) (line-past-corner world +opaque+ x y dx dy)
+    (multiple-value-bind (beyond-x beyond-y) (line-point-beyond-corner world +opaque+ x y dx dy)
       (when beyond-x
         (flet ((visit (index flag)
                  (when (logtest flag +occupied+) (push index cells))
@@ -97,8 +98,8 @@ while BODY runs."
 ;;; the same cells as WALK-GRID. Values common to the rays of a fan are computed once, and cells of
 ;;; no interest cost one test. Without REACH, cells cost no count of borders.
 
-(declaim (inline begin-axis walk-fan))
-(defun begin-axis (back per stride behind ahead left-behind left-ahead)
+(declaim (inline ray-axis-crossings walk-fan))
+(defun ray-axis-crossings (back per stride behind ahead left-behind left-ahead)
   "Return the change of the cell index where a ray crosses a border of one axis, the distance of the
 first crossing, and the largest number of crossings. PER is the distance from border to border along
 the ray; BACK is true if the ray runs towards smaller coordinates. BEHIND and AHEAD are the
@@ -127,11 +128,12 @@ CORNER, inline too, with the direction and the length of the ray."
             (per-x (abs inverse-x)) (per-y (abs inverse-y)))
         (declare (type cell-index index) (type double-float per-x per-y))
         (multiple-value-bind (step-x at-x left-x)
-            (begin-axis (minusp inverse-x) per-x 1 behind-x ahead-x left-behind-x left-ahead-x)
+            (ray-axis-crossings (minusp inverse-x) per-x 1 behind-x ahead-x left-behind-x
+                                left-ahead-x)
           (declare (type index-step step-x) (type double-float at-x) (type grid-size left-x))
           (multiple-value-bind (step-y at-y left-y)
-              (begin-axis (minusp inverse-y) per-y width behind-y ahead-y
-                          left-behind-y left-ahead-y)
+              (ray-axis-crossings (minusp inverse-y) per-y width behind-y ahead-y
+                                  left-behind-y left-ahead-y)
             (declare (type index-step step-y) (type double-float at-y) (type grid-size left-y))
             (macrolet ((cross-border (at per step left)
                          `(progn

@@ -10,12 +10,12 @@
 ;;; may all miss it: their direction must be in the field of view. A camera inside a container or
 ;;; storage bin sees what is directly in it, at distance 0. What a hand holds is where the hand is.
 
-(declaim (inline toggle-seen walls-around-p))
+(declaim (inline toggle-seen enclosed-by-walls-p))
 (defun toggle-seen (flags index)
   (declare (type flag-vector flags) (type cell-index index))
   (setf (aref flags index) (logxor (aref flags index) (logior +occupied+ +seen+))))
 
-(defun walls-around-p (map x y)
+(defun enclosed-by-walls-p (map x y)
   "True if every line from (X,Y) ends at a wall of MAP."
   (declare (type double-float x y))
   (and (map-enclosed map)
@@ -50,7 +50,7 @@ cells with things on the floor that rays meet within REACH columns and rows (rea
       (macrolet ((walk (reach)
                    `(walk-fan #'visit #'corner (logior +occupied+ +opaque+) flags columns rows x y
                               angle width count ,reach)))
-        (if (and (= reach +no-limit+) (walls-around-p map x y))
+        (if (and (= reach +no-limit+) (enclosed-by-walls-p map x y))
             (walk nil)
             (walk reach))))
     (unmark-seen flags found)
@@ -180,7 +180,7 @@ ALL, else one. The list may contain false sightings."
                        0
                        (phantom-count false-thing-prob* all dice))))
     (loop for demand in demands
-          unless (demand-attribute demand) do (warn-of-strange-attribute (demand-key demand) world))
+          unless (demand-attribute demand) do (warn-of-unknown-attribute (demand-key demand) world))
     (loop for find in (all-or-random-one (append finds (make-list phantoms)) all dice)
           collect (if find
                       (thing-sighting camera type (first find) (rest find) dice)

@@ -48,7 +48,7 @@ values; else NIL. Cells with a flag of MASK stop the line."
           (values (clip-to-cell (double corner-x) other-column)
                   (clip-to-cell (double corner-y) other-row)))))))
 
-(defun line-past-corner (world mask x y dx dy)
+(defun line-point-beyond-corner (world mask x y dx dy)
   "If a line in direction (DX,DY), stopped at (X,Y), only touches a corner there and may pass,
 return the point just beyond, as two values; else NIL. Cells with a flag of MASK stop lines."
   (flet ((before (position direction)
@@ -67,7 +67,7 @@ return the point just beyond, as two values; else NIL. Cells with a flag of MASK
 (defun corner-clear-p (world x y dx dy to-x to-y)
   "True if the line in direction (DX,DY) to (TO-X,TO-Y), obstructed at (X,Y), only touches a corner
 there and reaches its end."
-  (multiple-value-bind (beyond-x beyond-y) (line-past-corner world +opaque+ x y dx dy)
+  (multiple-value-bind (beyond-x beyond-y) (line-point-beyond-corner world +opaque+ x y dx dy)
     (and beyond-x
          (or (same-cell-p beyond-x beyond-y to-x to-y)
              (and (not (blocked-cell-p world beyond-x beyond-y +opaque+))

@@ -24,7 +24,7 @@
 
 ;;; Things have a direction from the robot unless they are exactly where it is.
 
-(defconstant +no-distance+ 1d-9
+(defconstant +least-bearing-distance+ 1d-9
   "Things no farther than this from the robot, in metres, have no direction.")
 
 (defun distance-to (robot x y)
@@ -42,7 +42,7 @@
   (values (clamp x 0d0 (- (map-width map) 1d-6))
           (clamp y 0d0 (- (map-height map) 1d-6))))
 
-(defun walk-to-phantom (robot angle dice)
+(defun random-phantom-position (robot angle dice)
   "Return the end of a random walk from ROBOT in the direction ANGLE. After each metre outside the
 robot's cell the walk ends with probability PROB-STOP*, and always at the map's edge (reading 136)."
   (let ((map (world-map (robot-world robot)))
@@ -61,7 +61,7 @@ METRES and METRES + 1."
   (flet ((exit (position direction size)
            (cond ((plusp direction) (/ (- size position) direction))
                  ((minusp direction) (/ (- position) direction))
-                 (t +endless+))))
+                 (t +infinite-distance+))))
     (let ((exit (max metres (min (exit (robot-x robot) dx (map-width map))
                                  (exit (robot-y robot) dy (map-height map))))))
       (clip-to-map map
@@ -74,10 +74,10 @@ METRES and METRES + 1."
     (multiple-value-bind (x y)
         (if (eq type :local)
             (robot-position robot)
-            (walk-to-phantom robot
-                             (+ (camera-heading camera)
-                                (roll-within (* 0.5d0 (camera-field-of-view camera)) dice))
-                             dice))
+            (random-phantom-position robot
+                                     (+ (camera-heading camera)
+                                        (roll-within (* 0.5d0 (camera-field-of-view camera)) dice))
+                                     dice))
       (make-sighting type nil x y data))))
 
 (defun false-description (world demands dice)
@@ -141,7 +141,7 @@ DESIGNATOR to an estimate of this direction, without jumps of a full turn."
                                              :denotation (sighting-denotation sighting)
                                              :location (camera-location camera))))
       (setf (designator-angle designator) (camera-angle camera))
-      (if (> distance +no-distance+)
+      (if (> distance +least-bearing-distance+)
           (set-bearing designator (bearing-to robot x y) dice)
           (incf (designator-angle designator) (angle-error dice)))
       designator)))

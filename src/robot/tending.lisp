@@ -105,7 +105,7 @@ During an approach a free line to a corner of the cell is enough."
       (unless (designator-location designator)
         (let ((distance (distance-to robot x y)))
           (setf (designator-distance designator) distance)
-          (if (> distance +no-distance+)
+          (if (> distance +least-bearing-distance+)
               (update-bearing designator (bearing-to robot x y) before dice)
               (setf (designator-bearing-p designator) nil)))))))
 
@@ -190,7 +190,7 @@ approach does not count, because the approach itself reports it (reading 112)."
 
 ;;; The tracks phase.
 
-(defun drop-out-of-reach (robot)
+(defun drop-unreachable-designators (robot)
   "Drop the local designators of ROBOT that no camera tracks and that are out of reach."
   (let ((designators (robot-designators robot)))
     (loop for number from 0
@@ -210,7 +210,7 @@ approach does not count, because the approach itself reports it (reading 112)."
           for designator = (camera-tracks camera)
           when designator
             do (update-track camera designator tick dice))
-    (drop-out-of-reach robot))
+    (drop-unreachable-designators robot))
   (when (robot-ended-tracks robot)
     (loop for (track . code) in (reverse (shiftf (robot-ended-tracks robot) '()))
           do (report-track-end track code))))
@@ -227,7 +227,7 @@ approach does not count, because the approach itself reports it (reading 112)."
                       (some #'camera-tracking (robot-cameras robot)))))
 
 (defun start-track (camera designator operation)
-  "Make CAMERA track DESIGNATOR. At the track's end call TRACK-ENDED with OPERATION (reading 142)."
+  "Make CAMERA track DESIGNATOR. At the track's end call NOTIFY-TRACK-END with OPERATION (reading 142)."
   (unless (tracked-p designator)
     (let ((world (robot-world (camera-robot camera))))
       (refresh-once designator (world-tick world) (world-dice world :tracking))

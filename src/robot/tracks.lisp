@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(tracking-p end-track drop-designator track track-ended approaching-p))
+(export '(tracking-p end-track drop-designator track notify-track-end approaching-p))
 
 ;;; A track runs in the background of a camera's commands: the camera keeps pointing at its
 ;;; designator's denotation. Tracks are updated once a tick, after events and kickers. A track may
@@ -19,10 +19,10 @@
     "The state of a camera that tracks a designator."
   (:state
    (designator nil (or null designator) "what is tracked")
-   (operation nil t "the operation that TRACK-ENDED is called with when the track ends, or
+   (operation nil t "the operation that NOTIFY-TRACK-END is called with when the track ends, or
 NIL" :export)))
 
-(defgeneric track-ended (operation code designator)
+(defgeneric notify-track-end (operation code designator)
   (:documentation "Report to OPERATION that its track of DESIGNATOR has ended with CODE."))
 
 (defgeneric approaching-p (event camera)
@@ -60,13 +60,13 @@ NIL" :export)))
 
 (defun report-track-end (track code)
   (when (track-operation track)
-    (track-ended (track-operation track) code (track-designator track))))
+    (notify-track-end (track-operation track) code (track-designator track))))
 
 (defun track-asker (track)
   (let ((operation (track-operation track)))
     (and (typep operation 'request) (request-asker operation))))
 
-(defun stop-track (camera code warning)
+(defun end-track-keeping-designator (camera code warning)
   "End the track of CAMERA, but keep the designator valid. Return the designator, or NIL if CAMERA
 had no track. See reading 161."
   (let ((track (camera-tracking camera)))
@@ -91,16 +91,17 @@ warnings unless SILENTLY."
       (let ((*reported-robot* (robot-name (designator-robot designator))))
         (warning-set (format nil "Removing ~A" designator))))
     (dolist (camera (tracking-cameras designator))
-      (stop-track camera :lost-track
-                  (unless silently
-                    (format nil "~A no longer valid. ~A lost track" designator camera))))
+      (end-track-keeping-designator camera :lost-track
+                                    (unless silently
+                                      (format nil "~A no longer valid. ~A lost track" designator
+                                              camera))))
     (release-number designator)))
 
 (defun end-track (camera code &optional warning)
   "End the track of CAMERA, if it has one, with the error CODE, and queue WARNING, a string. If the
 track is lost and no other camera tracks the designator, drop the designator."
   (let* ((track (camera-tracking camera))
-         (designator (stop-track camera code warning)))
+         (designator (end-track-keeping-designator camera code warning)))
     (when (and designator (not (eq code :interrupt)) (not (tracked-p designator)))
       (let ((*request-origin* (track-asker track))
             (*reported-robot* (robot-name (camera-robot camera))))

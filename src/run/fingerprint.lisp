@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(definitions-of definition-entry))
+(export '(definitions-depended-on definition-registry-entry))
 
 ;;; A journal has a list (kind name number) for each definition that the run depends on, where the
 ;;; number is a digest of the form that was read. It has (:file name number) for each file with
@@ -54,7 +54,7 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
    (loop for entry in (journal-entries-so-far simulation)
          when (eq operator (second entry)) collect (nth (+ 2 position) entry))))
 
-(defun users-commands (simulation)
+(defun user-defined-commands (simulation)
   (loop for name in (remove-duplicates (mapcar #'second (journal-entries-so-far simulation)))
         for entry = (lookup-entry name *commands*)
         when (and entry (users-entry-p entry)) collect name))
@@ -76,28 +76,28 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
       (:part (remove-duplicates
               (loop for robot in (simulation-robots simulation)
                     append (cl:map 'list #'type-of (robot-sensors robot)))))
-      (:command (users-commands simulation))
+      (:command (user-defined-commands simulation))
       (:substance (elements-at-indices (map-substances map) (map-substance-types map))))))
 
-(defun definition-of (kind entry)
+(defun definition-of-entry (kind entry)
   (list kind (qualified-name (entry-name entry))))
 
 (defun definitions-in-use (simulation)
   (append (loop for (kind . registry) in *definition-kinds*
                 append (loop for name in (definition-names-in-use kind simulation)
                              for entry = (lookup-entry name registry)
-                             when entry collect (definition-of kind entry)))
+                             when entry collect (definition-of-entry kind entry)))
           (loop for name in (journalled-arguments 'manipulate 0 simulation)
                 collect (list :manipulation (name-string name)))))
 
 ;;; The files that contain them.
 
-(defun definition-entry (definition)
+(defun definition-registry-entry (definition)
   "Return the registry entry of DEFINITION, (kind name ...), or NIL."
   (let ((registry (cdr (assoc (first definition) *definition-kinds* :test #'same-name-p))))
     (and registry (lookup-entry (second definition) registry))))
 
-(defun methods-of (definition)
+(defun methods-of-definition (definition)
   (let ((manipulation (and (same-name-p :manipulation (first definition))
                            (find-manipulation (second definition) nil))))
     (and manipulation (manipulation-methods manipulation))))
@@ -106,10 +106,10 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
   "Return the sources of DEFINITIONS, without duplicates and only those that are files."
   (remove-duplicates
    (loop for definition in definitions
-         for entry = (definition-entry definition)
+         for entry = (definition-registry-entry definition)
          append (remove-if-not #'rest
                                (cons (and entry (entry-source entry))
-                                     (mapcar #'method-source (methods-of definition)))))
+                                     (mapcar #'method-source (methods-of-definition definition)))))
    :test #'equal))
 
 (defun definitions-in-files (sources)
@@ -118,7 +118,7 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
                 unless (member kind '(:map :robot))
                   append (loop for entry in (registry-entries registry)
                                when (member (entry-source entry) sources :test #'equal)
-                                 collect (definition-of kind entry)))
+                                 collect (definition-of-entry kind entry)))
           (loop for manipulation in (all-manipulations)
                 when (intersection (mapcar #'method-source (manipulation-methods manipulation))
                                    sources :test #'equal)
@@ -138,8 +138,8 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
 of all definitions that are compared."
   (destructuring-bind (kind name &rest number) definition
     (declare (ignore number))
-    (let ((entry (definition-entry definition))
-          (methods (methods-of definition))
+    (let ((entry (definition-registry-entry definition))
+          (methods (methods-of-definition definition))
           (files (and (same-name-p :file kind)
                       (remove name sources :key #'source-file-name :test-not #'string=))))
       (values (cond (entry (entry-digest entry))
@@ -167,7 +167,7 @@ of all definitions that are compared."
 (defun recorded-as-undefined-p (definition)
   (same-name-p :undefined (or (and (symbolp (third definition)) (third definition)) "")))
 
-(defun definitions-of (simulation)
+(defun definitions-depended-on (simulation)
   "Return the definitions that SIMULATION depends on, as lists (kind name number)."
   (let* ((used (definitions-in-use simulation)) (sources (sources-of used)))
     (append (current-definitions
@@ -220,7 +220,7 @@ number of a definition that has changed becomes :CHANGED."
           ((and number (third other) (/= number (third other)))
            (format nil "~A has changed since the recording" (kind-and-name-text definition))))))
 
-(defun definition-differences (definitions)
+(defun definition-difference-texts (definitions)
   "Return a list of texts about how DEFINITIONS of a journal differ from the current definitions."
   (let ((others (current-definitions definitions)))
     (remove nil (mapcar (lambda (definition) (difference-text definition others)) definitions))))

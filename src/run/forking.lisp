@@ -64,7 +64,7 @@ cannot be copied."
                                       :world (simulation-world simulation)))
     (copy-run simulation copier)))
 
-(defun environment-of-fork (simulation)
+(defun environment-for-fork (simulation)
   "Return the environment, a list (symbol . value), to copy for a fork of SIMULATION. If SIMULATION
 has no dice for CL:RANDOM, as in a live run, new dice are made."
   (let ((environment (environment-of simulation)))
@@ -88,7 +88,7 @@ FORK-OPTIONS. Signals MISUSE inside a tick, and CANNOT-FORK."
   (when (simulation-ticking-p simulation)
     (refuse-fork "a tick is under way. Fork the run between ticks, as in a continuation."))
   (when (eq simulation *simulation*) (record-settings simulation))
-  (let ((copy (with-copier (copier :environment (environment-of-fork simulation)
+  (let ((copy (with-copier (copier :environment (environment-for-fork simulation)
                                    :options (fork-options simulation continuations decisions))
                 (copy-run simulation copier)))
         (journal (simulation-journal simulation)))
@@ -119,7 +119,7 @@ Signals MISUSE after +FORK-ATTEMPTS+ attempts."
         repeat +fork-attempts+
         for fork = (funcall try)
         unless (eq :busy fork) return fork
-        do (wait-and-serve moment 0.002)
+        do (serve-and-wait-once moment 0.002)
         finally (refuse-fork "the plans of ~A are still working. Let plans wait between long calls ~
                               of Lisp functions, or end them by (end-plan :all)."
                              (simulation-name simulation))))
@@ -227,7 +227,7 @@ WRONG-ARGUMENT if FORK is no fork."
     (when fork
       (in-any-case
         (multiple-value-prog1 (call-in-simulation fork function)
-          (signal-trouble (simulation-messages (latest-successor fork))))
+          (signal-pending-error (simulation-messages (latest-successor fork))))
         (release-fork fork)))))
 
 (addition with-fork)

@@ -33,7 +33,7 @@ of FUNCTION. ROBOTS is a robot, its name, or a list of robots and names. VARIABL
 symbols, of any package, that are bound to the ROBOTS with these names. The other arguments are the
 options of WITH-SIMULATION."
   (check-argument with-simulation seed (integerp seed) "an integer")
-  (check-thinking 'with-simulation thinking)
+  (check-thinking-mode 'with-simulation thinking)
   (check-argument with-simulation errors (typep errors 'error-policy)
                   ":report, :signal or :collect")
   (call-with-parameters
@@ -68,7 +68,7 @@ the run keeps, see KEEP-FORKS. The run is over at the end."
                           (seeded-random-state (simulation-seed simulation)))))
       (store-environment simulation)
       (in-any-case
-        (call-recording-names
+        (call-recording-robot-names
          (remove-duplicates (append variables (mapcar #'robot-name robots)))
          (lambda ()
            (call-reporting-errors
@@ -85,7 +85,7 @@ as the error policy of the message queue of SIMULATION says."
     (multiple-value-prog1
         (in-any-case
           (multiple-value-prog1 (funcall function)
-            (signal-trouble queue)
+            (signal-pending-error queue)
             (setf left-p nil))
           (warn-of-unpassed-ticks simulation left-p)
           (show-unread-messages queue)
@@ -96,7 +96,7 @@ as the error policy of the message queue of SIMULATION says."
                    (and (message-cause message)
                         (or left-p
                             (not (eq message (message-queue-unsignalled queue))))))))
-      (signal-trouble queue))))
+      (signal-pending-error queue))))
 
 (defun warn-of-unpassed-ticks (simulation left-p)
   "Warn at the end of SIMULATION if no ticks have passed, or too few for its requests. Do not warn
@@ -154,7 +154,7 @@ live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
 (defun strip-quote (form)
   (if (and (consp form) (eq 'quote (first form))) (second form) form))
 
-(defun robots-form-p (form environment)
+(defun robots-expression-p (form environment)
   "True if FORM, the robots of WITH-SIMULATION, is an expression, not a name or a list of names."
   (typecase form
     (symbol (and form (known-variable-p form environment) (not (find-blueprint form nil))))
@@ -170,7 +170,7 @@ live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
                (let ((call (find-if (lambda (used)
                                       (and (typep used '(cons symbol))
                                            (get (first used) 'command-signature)))
-                                    (values-used-in form))))
+                                    (value-forms-in form))))
                  (when call
                    (warn-of-style "~(~A~) returns nothing: it only begins the command. The ~
                                    results go to the continuation, when ticks have ~
@@ -185,7 +185,7 @@ live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
              (not (eq 'lambda (first head)))
              (and (symbolp head) (not (fboundp head)) (find-parameter head nil))))))
 
-(defun settings-form (form)
+(defun checked-settings-form (form)
   "Return FORM, the option :parameters. Signals MALFORMED-DEFINITION if FORM lacks a quote."
   (when (unquoted-settings-p form)
     (reject-clause "with-simulation" (list :parameters form)
@@ -227,7 +227,7 @@ reported:
 - :COLLECT only queues a message; SIMULATION-ERRORS returns the errors and failures.
 With each value of ERRORS, a warning goes to the error output if no ticks have passed although
 something was requested, or if a plan waits for an event that nothing in the run can cause."
-  (let* ((form-p (robots-form-p robots environment))
+  (let* ((form-p (robots-expression-p robots environment))
          (robots (if form-p robots (strip-quote robots)))
          (variables (if form-p '() (variables-among robots))))
     (warn-of-used-command-values body)
@@ -236,7 +236,7 @@ something was requested, or if a plan waits for an event that nothing in the run
                              ,@body)
                            ,(if form-p robots `',robots)
                            :variables ',variables
-                           :seed ,seed :parameters ,(settings-form parameters) :clean ,clean
+                           :seed ,seed :parameters ,(checked-settings-form parameters) :clean ,clean
                            :journal ,journal :keep ,keep :thinking ,thinking
                            :errors ,errors)))
 

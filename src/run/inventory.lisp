@@ -31,7 +31,7 @@ list (KIND argument...) of a keyword and plain data. EXTERNAL-OBJECT finds OBJEC
          (not (finite-p number))
          (list :double-float (double-to-bits number)))))
 
-(defun method-at (position name)
+(defun manipulation-method-at (position name)
   (check-type position unsigned-byte)
   (or (nth position (manipulation-methods (find-manipulation name)))
       (error "the manipulation ~(~A~) has too few methods for the file" name)))
@@ -45,8 +45,8 @@ list (KIND argument...) of a keyword and plain data. EXTERNAL-OBJECT finds OBJEC
                   (:kicker (find-kicker argument))
                   (:place-type (find-place-type argument))
                   (:command (find-command argument))
-                  (:manipulation (command-of-manipulation (find-manipulation argument)))
-                  (:method (method-at more argument))))
+                  (:manipulation (ensure-manipulation-command (find-manipulation argument)))
+                  (:method (manipulation-method-at more argument))))
         (integer (case kind
                    (:character (code-char (the (integer 0 (#.char-code-limit)) argument)))
                    (:double-float (bits-to-double (the (unsigned-byte 64) argument)))))
@@ -72,7 +72,7 @@ list (KIND argument...) of a keyword and plain data. EXTERNAL-OBJECT finds OBJEC
 (defconstant +longest-inline-string+ 1000 "The most characters of a string without a number.")
 (defconstant +most-elements-in-line+ 1000 "The most elements of a list or array in a line.")
 (defconstant +max-nesting+ 50 "The deepest nesting of lists without numbers.")
-(defconstant +characters-per-object+ 300000
+(defconstant +max-characters-per-object+ 300000
   "The approximate maximum number of characters that are written for one object.")
 
 (defstruct (batch (:constructor make-batch (shape fields)) (:copier nil))
@@ -126,7 +126,7 @@ so far, its values :FOUND or :NUMBERED. At the end, the number of the object rep
         (cond ((array-has-fill-pointer-p array) :growing)
               ((adjustable-array-p array) :adjustable))))
 
-(defun savable-type-p (type)
+(defun savable-structure-type-p (type)
   "True if structures of TYPE, a symbol, can be saved slot by slot."
   (or (kind-named type)
       (member type '(place cell interruption command-failure pt interval pt-interval))
@@ -134,7 +134,7 @@ so far, its values :FOUND or :NUMBERED. At the end, the number of the object rep
 
 (defun structure-shape (object inventory)
   (let ((type (type-of object)))
-    (unless (and (symbolp type) (savable-type-p type))
+    (unless (and (symbolp type) (savable-structure-type-p type))
       (reject-object object "Only the Lisp that made this object can use it" inventory))
     (list :object type)))
 
@@ -143,7 +143,7 @@ so far, its values :FOUND or :NUMBERED. At the end, the number of the object rep
     (reject-object table "Hash tables with a user-defined test cannot be saved" inventory))
   (list :table (hash-table-test table) (hash-table-count table)))
 
-(defun shape-in-inventory (object inventory)
+(defun saved-object-shape (object inventory)
   "Return the shape of OBJECT: a list of a keyword and plain data from which an empty object of the
 same structure can be made. Signals MISUSE."
   (typecase object
@@ -162,7 +162,7 @@ same structure can be made. Signals MISUSE."
 ;;; Finding objects.
 
 (defun add-to-batch (object inventory)
-  (let* ((shape (shape-in-inventory object inventory))
+  (let* ((shape (saved-object-shape object inventory))
          (batch (or (gethash shape (inventory-batches inventory))
                     (progn (push shape (inventory-shapes inventory))
                            (setf (gethash shape (inventory-batches inventory))
@@ -193,20 +193,21 @@ was found before. Return true if it was found before."
             (t (setf (gethash object (inventory-states inventory)) :numbered)
                (push (cons object name) (inventory-external-objects inventory)))))))
 
-(defun reserve-room (characters inventory)
+(defun reserve-characters (characters inventory)
   "Record CHARACTERS more characters for the current object of INVENTORY. True if there is room."
   (plusp (decf (inventory-room inventory) characters)))
 
 (defun record-string (text inventory)
   (let ((short-p (and (<= (length text) +longest-inline-string+) (simple-string-p text))))
-    (mark-found text (not (and (reserve-room (* 2 (length text)) inventory) short-p)) inventory)))
+    (mark-found text (not (and (reserve-characters (* 2 (length text)) inventory) short-p))
+                inventory)))
 
 (defun record-list (list depth inventory)
   "Record the conses of LIST, which is nested DEPTH deep, and their contents in INVENTORY."
   (loop for tail = list then (cdr tail)
         for position from 1
         while (consp tail)
-        do (let ((far-p (or (not (reserve-room 2 inventory)) (= depth +max-nesting+))))
+        do (let ((far-p (or (not (reserve-characters 2 inventory)) (= depth +max-nesting+))))
              (when (mark-found tail (or far-p (= position +most-elements-in-line+)) inventory)
                (return))
              ;; The rest gets its own line and is surveyed later.
@@ -219,14 +220,14 @@ was found before. Return true if it was found before."
 (defun record-value (value depth inventory)
   "Record VALUE in INVENTORY, and also its contents if it gets no number. Signals MISUSE."
   (typecase value
-    ((or null fixnum) (reserve-room 20 inventory))
+    ((or null fixnum) (reserve-characters 20 inventory))
     (double-float (if (finite-p value)
-                      (reserve-room 25 inventory)
+                      (reserve-characters 25 inventory)
                       (mark-numbered value inventory)))
-    (symbol (reserve-room (+ 10 (* 2 (length (symbol-name value)))) inventory)
+    (symbol (reserve-characters (+ 10 (* 2 (length (symbol-name value)))) inventory)
      (when (unprintable-atom-p value)
        (reject-object value "The package of this symbol has a name with ::" inventory)))
-    (number (reserve-room 50 inventory)
+    (number (reserve-characters 50 inventory)
      (when (unprintable-atom-p value) (reject-object value "This number is too long" inventory)))
     (cons (record-list value (1+ depth) inventory))
     (string (record-string value inventory))
@@ -235,7 +236,7 @@ was found before. Return true if it was found before."
 ;;; Contents of objects.
 
 (defun record-slots (object inventory)
-  (let ((batch (gethash (shape-in-inventory object inventory) (inventory-batches inventory))))
+  (let ((batch (gethash (saved-object-shape object inventory) (inventory-batches inventory))))
     (dolist (field (batch-fields batch))
       (setf (inventory-field inventory) field)
       (record-value (funcall (kind-slot-reader field) object) 0 inventory))))
@@ -246,7 +247,7 @@ was found before. Return true if it was found before."
       (record-value (row-major-aref array index) 0 inventory))))
 
 (defun record-contents (object inventory)
-  (setf (inventory-room inventory) +characters-per-object+
+  (setf (inventory-room inventory) +max-characters-per-object+
         (inventory-holder inventory) object
         (inventory-field inventory) nil)
   (typecase object

@@ -68,7 +68,7 @@
     (error (trouble)
       (error "~[the head~:;~:*entry ~D~] is damaged: ~A" number (one-line-text trouble)))))
 
-(defun read-data (in)
+(defun read-journal-data (in)
   "Return all data of the journal in the stream IN. Signals errors that name the damaged entry."
   (loop with sum = 0
         for number from 0
@@ -192,7 +192,7 @@ WRONG-ARGUMENT unless FILE is a file name."
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file
                      "a journal, or the name of a file that holds a journal"))
-  (reading-file (in file :journal 'damaged-journal) (journal-from-data (read-data in))))
+  (reading-file (in file :journal 'damaged-journal) (journal-from-data (read-journal-data in))))
 
 ;;; Writing. The new file is read on trial, so saving refuses what loading would refuse.
 

@@ -64,10 +64,10 @@ Signals WRONG-ARGUMENT."
   "End JOURNAL, which is full, at TICK, and queue a warning."
   (setf (journal-full-p journal) t
         (journal-end journal) tick)
-  (warn-notably (format nil "The journal is full: it has ~D entries and ends at tick ~D. The run ~
+  (queue-notable-warning (format nil "The journal is full: it has ~D entries and ends at tick ~D. The run ~
                              goes on, but can be repeated only up to that tick; see ~
                             *JOURNAL-LIMIT*."
-                       (journal-length journal) tick)))
+                                (journal-length journal) tick)))
 
 (defun room-left-p (journal)
   "True if JOURNAL has room for one more entry, or if *JOURNAL-LIMIT* is not a number."
@@ -102,11 +102,11 @@ the current tick. It is recorded in the journal and past of SIMULATION, if SIMUL
                    (cons operator (arguments-to-keep arguments))))
       (record-act simulation operator arguments request))))
 
-(defun settings-by-name (settings)
+(defun settings-with-string-names (settings)
   "Return SETTINGS, lists (symbol value), as lists (name value) with strings as names."
   (loop for (symbol value) in settings collect (list (string-downcase symbol) value)))
 
-(defun settings-by-symbol (settings)
+(defun settings-with-symbols (settings)
   "Return SETTINGS, lists (name value), as lists (symbol value) with the parameters' symbols."
   (loop for (name value) in settings
         collect (list (parameter-symbol (find-parameter name)) value)))
@@ -114,15 +114,16 @@ the current tick. It is recorded in the journal and past of SIMULATION, if SIMUL
 (defun record-settings (simulation)
   "Record in the journal of SIMULATION the parameters that were set since the last call. If the
 values that DIRTY-SIMULATION would restore have changed, record these, too."
-  (follow-parameters (simulation-known-parameters simulation)
-                     (and (simulation-thread simulation) t)
-                     (lambda (symbol value)
-                       (record-operation simulation 'parameter
-                                         (list (string-downcase symbol) value))))
+  (synchronize-parameters (simulation-known-parameters simulation)
+                          (and (simulation-thread simulation) t)
+                          (lambda (symbol value)
+                            (record-operation simulation 'parameter
+                                              (list (string-downcase symbol) value))))
   (when (and (eq simulation *simulation*)
              (not (eq *noise-before-cleaning* (simulation-known-noise simulation))))
     (setf (simulation-known-noise simulation) *noise-before-cleaning*)
-    (record-operation simulation 'cleaning (list (settings-by-name *noise-before-cleaning*)))))
+    (record-operation simulation 'cleaning
+                      (list (settings-with-string-names *noise-before-cleaning*)))))
 
 ;;; Remarks. Plans and programs are not repeated in a replay. So the journal has remarks about them
 ;;; for users, made by any thread. They do not affect the replay.
@@ -172,8 +173,8 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
                             :robots (robot-names simulation)
                             :seed (simulation-seed simulation)
                             :thinking (simulation-thinking simulation)
-                            :parameters (settings-by-name (parameter-settings))
-                            :definitions (definitions-of simulation)))))
+                            :parameters (settings-with-string-names (parameter-settings))
+                            :definitions (definitions-depended-on simulation)))))
 
 (defun set-initial-thinking (simulation mode)
   "Set the thinking mode of SIMULATION, also in its journal, to MODE. No tick has passed yet."
@@ -186,7 +187,7 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
   "Store the current definitions in the journal of SIMULATION, because definitions may have changed
 since the journal was begun. No tick of SIMULATION has passed yet."
   (let ((header (copy-list (journal-header (simulation-journal simulation)))))
-    (setf (getf header :definitions) (definitions-of simulation)
+    (setf (getf header :definitions) (definitions-depended-on simulation)
           (journal-header (simulation-journal simulation)) header)))
 
 (defun robot-names (simulation)
@@ -204,7 +205,7 @@ since the journal was begun. No tick of SIMULATION has passed yet."
     (let ((header (copy-list (journal-header journal))))
       (setf (getf header :robots) (robot-names simulation)
             (getf header :definitions) (merge-definitions (getf header :definitions)
-                                                          (definitions-of simulation))
+                                                          (definitions-depended-on simulation))
             (journal-header journal) header))
     journal))
 

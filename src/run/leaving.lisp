@@ -11,11 +11,11 @@
 (defun issued-by-program-p (request)
   "True if REQUEST was made directly by a program, not by a plan, a continuation or a prompt."
   (and (request-name request)
-       (starts-with-subseq "Lisp" (note-text (request-asker request)))))
+       (starts-with-subseq "Lisp" (asker-note-text (request-asker request)))))
 
 (defun wrong-simulation-remedy (simulation)
   "Return a remedy for requests to SIMULATION made in another run since its last tick, or NIL."
-  (and (requested-elsewhere-p (simulation-world simulation))
+  (and (requested-by-other-run-p (simulation-world simulation))
        (one-line "The request was made inside another with-simulation, and only its ticks passed.
 There, use the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
 
@@ -41,7 +41,7 @@ last tick. Requests that only stop something do not count. Return NIL if there a
 
 (defun mark-as-prompt-run (simulation)
   "Record that SIMULATION belongs to a prompt, so that warnings at its end suggest lines to type."
-  (first-time-p '(:lines-typed) (simulation-world simulation)))
+  (first-warning-for-key-p '(:lines-typed) (simulation-world simulation)))
 
 (defparameter *prompt-remedy*
   "STEP N passes N ticks, PLAN NAME carries out a plan to its end."
@@ -49,7 +49,7 @@ last tick. Requests that only stop something do not count. Return NIL if there a
 
 (defun undone-request-names (simulation)
   "Return two lists of names: of requests to SIMULATION and plans not begun; of these plans alone."
-  (let ((plans (unfinished-in-participants simulation))
+  (let ((plans (unfinished-work-texts simulation))
         (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
                         ;; For requests of plans, the plan is named.
                         when (and (request-name request) (not (request-forked-p request)))

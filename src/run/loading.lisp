@@ -17,10 +17,10 @@
   (check-file-format (second datum) +saved-run-version+)
   (let* ((head (third datum))
          (trouble (or (header-error-text (if (plist-p head) (list* :seed 0 head) head))
-                      (head-error-text head))))
+                      (saved-run-head-error-text head))))
     (when trouble (error "the head makes no sense: ~A" trouble))))
 
-(defun head-error-text (head)
+(defun saved-run-head-error-text (head)
   "Return a text about an error in HEAD that HEADER-ERROR-TEXT does not check, or NIL."
   (cond ((not (settings-p (getf head :noise))) "the noise in the head makes no sense")
         ((settings-error-text (getf head :noise)))
@@ -83,7 +83,7 @@
         collect datum into entries
         finally (return (values entries datum))))
 
-(defun journal-of-data (datum entries)
+(defun saved-journal-from-data (datum entries)
   "Return the journal whose first line is DATUM, with ENTRIES."
   (unless (typep datum '(cons (eql :journal) (cons boolean (cons t (cons list null)))))
     (error "the journal in the file makes no sense"))
@@ -104,7 +104,7 @@
         (error "the last line does not have the tick of the run"))
       (when (next-data-line (line-reader-in reader)) (error "the file goes on after its last line"))
       (when (and entries (null first)) (error "the file has journal entries, but no journal"))
-      (let ((journal (and first (journal-of-data first entries))))
+      (let ((journal (and first (saved-journal-from-data first entries))))
         (when (and journal (not (if (journal-full-p journal)
                                     (<= (journal-end journal) tick)
                                     (= (journal-end journal) tick))))
@@ -223,7 +223,7 @@ the parameters that DIRTY-SIMULATION would restore in this simulation."
   (check-argument load-simulation file (typep file '(or string pathname)) "the name of a file")
   (let ((head (read-saved-run-head file)))
     (unless anyway (check-saved-definitions head))
-    (values (read-simulation file) (settings-by-symbol (getf head :noise)))))
+    (values (read-simulation file) (settings-with-symbols (getf head :noise)))))
 
 (addition load-simulation)
 (defun load-simulation (file &key anyway)

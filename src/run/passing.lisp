@@ -74,9 +74,9 @@ restart CONTINUE passes the remaining ticks."
   (let ((simulation (successor-of-fork simulation)))
     (warn-of-ticks-in-plan :run-ticks simulation)
     (prog1 (check-and-pass-ticks simulation count)
-      (notify-participants simulation))))
+      (notify-participants-after-ticks simulation))))
 
-(defun notify-participants (simulation)
+(defun notify-participants-after-ticks (simulation)
   "Let the participants of SIMULATION act after RUN-TICKS or RUN-UNTIL has passed ticks."
   (dolist (participant (simulation-participants simulation))
     (participant-after-ticks participant simulation)))
@@ -102,7 +102,7 @@ restart CONTINUE passes the remaining ticks."
   (when *recorded-bindings* (warn-of-recorded-bindings (simulation-world simulation)))
   (loop with last = (+ (simulation-tick simulation) count)
         do (pass-ticks-when-free simulation (- last (simulation-tick simulation)))
-        while (signal-trouble (simulation-messages simulation))
+        while (signal-pending-error (simulation-messages simulation))
         until (or (simulation-over simulation) (<= last (simulation-tick simulation))))
   (simulation-tick simulation))
 
@@ -137,7 +137,7 @@ WRONG-ARGUMENT, and MISUSE as RUN-TICKS does."
                         until (zerop left)
                         do (check-and-pass-ticks (successor-of-fork simulation) 1))))
       (note-run-until-result answer limit-p limit (successor-of-fork simulation))
-      (notify-participants (successor-of-fork simulation))
+      (notify-participants-after-ticks (successor-of-fork simulation))
       (values answer (simulation-tick simulation)))))
 
 (addition step-ticks)
@@ -174,7 +174,7 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
 
 (defun warn-of-await-timeout (simulation seconds)
   "Queue a warning that SIMULATION was not idle after AWAIT-IDLE has waited SECONDS. Return NIL."
-  (let ((names (remove-duplicates (unfinished-in-participants simulation) :test #'string=))
+  (let ((names (remove-duplicates (unfinished-work-texts simulation) :test #'string=))
         (*message-queue* (simulation-messages simulation)))
     (warn-at-once (format nil "await-idle has waited for ~A s and stops waiting, because ~:[some ~
                                work is still in progress~;~:*~{~A~^ and ~} did not end~]."
@@ -195,10 +195,10 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
              (when (settled-p simulation) (signal-semaphore idle))))
       (in-any-case
         (progn (add-observer #'look simulation)
-               (wait-for-idle idle seconds simulation))
+               (wait-on-idle-semaphore idle seconds simulation))
         (remove-observer #'look simulation)))))
 
-(defun wait-for-idle (idle seconds simulation)
+(defun wait-on-idle-semaphore (idle seconds simulation)
   "Wait at most SECONDS until SIMULATION is idle. Return true if it is idle. The semaphore IDLE is
 signalled when SIMULATION may be idle, but not when a plan ends. Signals MISUSE if SIMULATION has
 failed."

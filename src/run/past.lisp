@@ -151,11 +151,11 @@ the tick TICK; and a list, the newest first, of requests made but not performed 
   "The default of the option :KEEP of SIMULATOR: the number of forks that a live run keeps, so that
 REWIND can go back; T for 30, NIL for none. The prompt sets this variable to T.")
 
-(defconstant +default-forks+ 30 "How many forks a run keeps by default.")
+(defconstant +default-fork-count+ 30 "How many forks a run keeps by default.")
 (defconstant +most-ticks-between-clock-reads+ 1024
   "The most ticks that a run passes before it reads the clock.")
 
-(defconstant +least-fork-seconds+ 1d-4 "The least seconds that a fork is taken to cost.")
+(defconstant +least-fork-cost+ 1d-4 "The least seconds that a fork is taken to cost.")
 
 (defparameter *fork-time-share* 1/100
   "The part of its time that a run may spend on forks: with 1, a run keeps a fork at each tick.")
@@ -182,9 +182,9 @@ whose removal leaves the smallest gap in proportion to its age."
 (defun warn-of-unkept-fork (simulation past condition)
   (unless (past-warned-p past)
     (setf (past-warned-p past) t)
-    (warn-notably (format nil "The state at tick ~D cannot be kept for REWIND: ~A."
-                         (simulation-tick simulation)
-                         (string-right-trim "." (brief-text condition))))))
+    (queue-notable-warning (format nil "The state at tick ~D cannot be kept for REWIND: ~A."
+                                  (simulation-tick simulation)
+                                  (string-right-trim "." (brief-condition-text condition))))))
 
 (defun make-fork-to-keep (simulation past)
   "Return a fork of SIMULATION with PAST; :BUSY if a participant is busy; NIL if this fails."
@@ -197,9 +197,9 @@ whose removal leaves the smallest gap in proportion to its age."
 (defun discard-past-if-full (simulation past)
   (when (and (finite-p *journal-limit*) (> (past-count past) *journal-limit*))
     (setf (past-forks past) '() (past-acts past) '() (past-count past) 0)
-    (warn-notably (format nil "This run has had so many requests that REWIND can go back only to ~
+    (queue-notable-warning (format nil "This run has had so many requests that REWIND can go back only to ~
                                tick ~D; see *JOURNAL-LIMIT*."
-                         (simulation-tick simulation)))))
+                                  (simulation-tick simulation)))))
 
 ;; The clock is coarse, so the cost is averaged over many forks.
 (defun update-fork-cost (past began)
@@ -207,7 +207,7 @@ whose removal leaves the smallest gap in proportion to its age."
   (let ((cost (+ (* 15/16 (past-cost past)) (* 1/16 (- (seconds-now) began)))))
     (setf (past-cost past) cost
           (past-due past) (if (< *fork-time-share* 1)
-                              (+ began (/ (max cost +least-fork-seconds+) *fork-time-share*))
+                              (+ began (/ (max cost +least-fork-cost+) *fork-time-share*))
                               began))))
 
 (defun keep-fork (simulation past)
@@ -228,17 +228,17 @@ participant is busy, try again at the end of the next tick."
     (unless (eq :busy fork)
       (update-fork-cost past began))))
 
-(defconstant +fork-checks+ 100
+(defconstant +max-fork-checks+ 100
   "How often a thread waiting for a fork checks whether the fork was made, before it gives up.")
 
 (defun await-postponed-fork (simulation)
   "If a fork of SIMULATION was postponed because this thread was busy, wait until the fork is made
-at the end of the next tick. Give up after +FORK-CHECKS+ checks, as the ticks may have stopped."
+at the end of the next tick. Give up after +MAX-FORK-CHECKS+ checks, as the ticks may have stopped."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
     (when (and past (past-wanted past))
-      (loop repeat +fork-checks+
+      (loop repeat +max-fork-checks+
             while (past-wanted past)
-            do (wait-and-serve moment 0.002))
+            do (serve-and-wait-once moment 0.002))
       (setf (past-wanted past) nil))))
 
 (defun keep-fork-if-affordable (simulation past)
@@ -276,7 +276,7 @@ too. Return nothing. Signals WRONG-ARGUMENT, and MISUSE if the run is over."
     (check-not-over simulation 'keep-forks)
     (asking (simulation)
       (let ((past (simulation-past simulation))
-            (limit (if (eq t count) +default-forks+ count)))
+            (limit (if (eq t count) +default-fork-count+ count)))
         (cond ((null count) (setf (simulation-past simulation) nil))
               (past (setf (past-limit past) limit))
               (t (begin-keeping-forks simulation limit))))))

@@ -13,12 +13,12 @@
 ;;; ". tail". Unknown keywords are interned there.
 
 (defconstant +deepest-nesting+ 200 "The deepest nesting of lists.")
-(defconstant +largest-datum+ 100000 "The most conses of a datum.")
+(defconstant +max-datum-conses+ 100000 "The most conses of a datum.")
 (defconstant +longest-number+ 1000 "The most characters of a number.")
 
 (defun tree-p (datum)
-  "True if DATUM is an acyclic tree of up to +LARGEST-DATUM+ conses and +DEEPEST-NESTING+ levels."
-  (let ((left +largest-datum+))
+  "True if DATUM is an acyclic tree of up to +MAX-DATUM-CONSES+ conses and +DEEPEST-NESTING+ levels."
+  (let ((left +max-datum-conses+))
     (labels ((visit (datum depth)
                (loop while (consp datum)
                      do (when (or (minusp (decf left)) (> depth +deepest-nesting+))

@@ -46,8 +46,8 @@ arguments are compared: which of its commands a plan withdraws is known only on 
   (destructuring-bind (operator . arguments) (request-entry request)
     (let ((arguments (externalize arguments)))
       (and (eq operator (act-operator act))
-           (alike-p (first arguments) (first (act-arguments act)))
-           (or (not (typep request 'event)) (alike-p arguments (act-arguments act)))))))
+           (alike-across-runs-p (first arguments) (first (act-arguments act)))
+           (or (not (typep request 'event)) (alike-across-runs-p arguments (act-arguments act)))))))
 
 (defun repeat-request (act repetition)
   "If the fork itself has made the request of ACT too, post the fork's request. Else repeat ACT."
@@ -70,7 +70,7 @@ arguments are compared: which of its commands a plan withdraws is known only on 
       (pop (repetition-acts repetition)))))
 
 (defun redo-in-tick (repetition)
-  "Repeat acts done in this tick after the world changed, up to the current moment (COUNT-MOMENT)."
+  "Repeat acts done in this tick after the world changed, up to the current moment (RECORD-CODE-MOMENT)."
   (loop with moments = (timeline-moments (simulation-timeline (repetition-simulation repetition)))
         for act = (pop-due-act repetition (lambda (act)
                                             (and (eq :change (act-kind act))

@@ -115,7 +115,7 @@ SIMULATION to the simulation."
   (check-type name (and symbol (not null)))
   (let ((thing (dereference :thing (list serial) simulation)))
     (or (find-attachment thing name)
-        (detached-kicker thing name))))
+        (removed-kicker-placeholder thing name))))
 
 (define-dereference :odometer (robot name)
   (robot-odometer (robot-in simulation robot) name))
@@ -176,7 +176,7 @@ the same class that have no reference. (Each run has its own copy of such object
         do (unless (alike-trees-p (pop one) (pop other)) (return-from alike-trees-p nil)))
   (alike-atoms-p one other))
 
-(defun alike-p (one other)
+(defun alike-across-runs-p (one other)
   "True if ONE and OTHER, both externalized or memorized, can denote the same object in two runs."
   (and (tree-p one) (tree-p other) (alike-trees-p one other)))
 

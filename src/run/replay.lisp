@@ -23,7 +23,7 @@
 (defun header-differences (header blueprints)
   "Return a list of texts about how the current definitions differ from those in HEADER. BLUEPRINTS
 are the robots' blueprints. A text says so if a robot is now in another map."
-  (append (definition-differences (getf header :definitions))
+  (append (definition-difference-texts (getf header :definitions))
           (loop with map = (find-map (getf header :map) nil)
                 for blueprint in blueprints
                 for other = (find-map (blueprint-map blueprint) nil)
@@ -101,7 +101,7 @@ are the robots' blueprints. A text says so if a robot is now in another map."
     (perform-entries (nthcdr before entries) (1+ before) simulation)
     (run-ticks (- (journal-end journal) (simulation-tick simulation)) simulation)))
 
-(defun complete-settings (settings)
+(defun settings-with-defaults (settings)
   "Return lists (name value), one for each parameter: its value in SETTINGS or else its default."
   (loop for parameter in (all-parameters)
         collect (or (find parameter settings :key (lambda (setting)
@@ -134,7 +134,8 @@ simulation when the entries before the first tick have been repeated."
          (when observer (remove-observer observer simulation))
          (funcall function)))
      (mapcar #'blueprint-name blueprints)
-     :seed (getf header :seed) :parameters (complete-settings (getf header :parameters)) :journal t
+     :seed (getf header
+                 :seed) :parameters (settings-with-defaults (getf header :parameters)) :journal t
      :keep keep :thinking (getf header :thinking :free))))
 
 (addition with-replay)

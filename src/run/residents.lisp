@@ -48,7 +48,7 @@ map. If the map or definition of a robot has been replaced, return the current r
 (defun bind-robot-name (blueprint robot)
   (setf (global-value (blueprint-name blueprint)) robot))
 
-(defun settle-named-robot (blueprint)
+(defun ensure-named-robot (blueprint)
   "Return the resident robot of BLUEPRINT, made if needed. Set the robot's variable to this robot."
   (loop
     (let ((robot (ensure-resident-robot blueprint)))
@@ -62,7 +62,7 @@ map. If the map or definition of a robot has been replaced, return the current r
   (let* ((blueprint (find-blueprint name))
          (robot (blueprint-robot blueprint)))
     (if (or (null robot) (robot-retired robot))
-        (settle-named-robot blueprint)
+        (ensure-named-robot blueprint)
         robot)))
 
 ;;; When a map is defined anew.
@@ -95,7 +95,7 @@ map. If the map or definition of a robot has been replaced, return the current r
            (blueprint-name blueprint)
            (format nil "it does not fit into the new map ~(~A~), because ~A; define the robot anew"
                    (map-name map) trouble))
-          (settle-named-robot blueprint)))))
+          (ensure-named-robot blueprint)))))
 
 (defun end-world-run (world reason)
   "End the run of WORLD and retire its robots, for REASON. WORLD cannot be started again. Return

@@ -83,7 +83,7 @@ of each number, or NIL for an external object."
   (unless (and (symbolp type)
                type
                (typep (find-class type nil) 'structure-class)
-               (savable-type-p type))
+               (savable-structure-type-p type))
     (error "the file has objects of a kind that is not loaded, ~A" (short-text type)))
   (let ((fields (fields-of-type type)))
     (unless (equal names (field-names (remove-if-not #'saved-slot-p fields)))

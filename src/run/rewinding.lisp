@@ -82,10 +82,10 @@ first, of requests made but not performed by then."
 
 (defun warn-of-divergence (run tick)
   (let ((*message-queue* (simulation-messages run)))
-    (warn-notably (format nil "The rewound run differs from the original: from tick ~D on a plan ~
+    (queue-notable-warning (format nil "The rewound run differs from the original: from tick ~D on a plan ~
                                acts differently, which can happen if it depends on state outside ~
                                its run."
-                          tick))))
+                                   tick))))
 
 (defun repeat-past (past asked tick)
   "Return two values: a copy of the run of PAST at the end of the tick TICK, with the requests ASKED
@@ -139,7 +139,7 @@ it: the binding, the global value or both."
         (simulation-messages old) (make-message-queue))
   (call-listeners *rewind-hooks* old new))
 
-(defun end-rewound (old new)
+(defun end-rewound-run (old new)
   (let ((reason (format nil "it was rewound to tick ~D, and a new run continues from there: the ~
                              value of *SIMULATION* where REWIND was called"
                         (simulation-tick new))))
@@ -177,13 +177,13 @@ the replacement."
     (deferring-interrupts
       (in-any-case
         (hand-over-observers new old)
-        (end-rewound old new)
+        (end-rewound-run old new)
         (take-over-state new old from)
         (funcall then)))))
 
 (defun start-successor (new old rate paused-p)
   "Run NEW, which has replaced OLD, live at RATE, unless another thread has stopped OLD meanwhile."
-  (when (claimed-p (simulation-timeline old))
+  (when (pacing-claimed-p (simulation-timeline old))
     (start-clock new :rate rate :paused-p paused-p
                      :real (eq :real (simulation-thinking new)))))
 

@@ -208,7 +208,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
     (removef (simulation-participants simulation) participant))
   (values))
 
-(defun unfinished-in-participants (simulation)
+(defun unfinished-work-texts (simulation)
   "Return a list of texts about unfinished work of the participants of SIMULATION."
   (loop for participant in (simulation-participants simulation)
         append (participant-unfinished participant)))
@@ -260,7 +260,7 @@ Return MODE. The modes and their costs:
 If a plan calls SET-THINKING, the mode applies from the plan's next reaction on, which is usually in
 the next tick. Runs in the modes :FREE and :CHARGED are the same on every machine. In a headless run
 :REAL is the same as :FREE. The journal records the mode. Signals WRONG-ARGUMENT."
-  (check-thinking 'set-thinking mode)
+  (check-thinking-mode 'set-thinking mode)
   (let ((simulation (resolve-simulation simulation 'set-thinking)))
     (changing ((simulation-world simulation) set-thinking mode)
       (set-timeline-thinking (simulation-timeline simulation) mode)))

@@ -45,7 +45,7 @@
 
 (defun unsavable-texts (simulation journal)
   "Return a list of texts about the parts of SIMULATION and JOURNAL that cannot be saved."
-  (append (loop for text in (unfinished-in-participants simulation)
+  (append (loop for text in (unfinished-work-texts simulation)
                 collect (format nil "~A is under way" text))
           (loop for event in (waiting-events simulation)
                 when (holds-function-p event)
@@ -84,27 +84,28 @@ these parts out if WITHOUT-P is true; otherwise signal UNSAVABLE."
         for value across (simulation-known-parameters simulation)
         collect (list (parameter-name parameter) value)))
 
-(defun commands-under-way (simulation)
+(defun user-commands-in-progress (simulation)
   "Return the users' commands in progress or waiting in SIMULATION, in the form of definitions."
   (loop for request in (append (waiting-events simulation) (waiting-requests simulation))
         for command = (request-operator request)
         for entry = (and (command-p command) (lookup-entry (command-name command) *commands*))
         when (and entry (users-entry-p entry))
-          collect (definition-of :command entry)))
+          collect (definition-of-entry :command entry)))
 
-(defun head-for-programs (simulation)
+(defun program-state-for-head (simulation)
   "Return what the head of a saved run says about programs in SIMULATION: the noise that
 DIRTY-SIMULATION would restore, and the dice of CL:RANDOM. For a live run there are no dice, because
 each of its threads has its own."
   (let ((dice (and (headless-p simulation)
                    (cdr (assoc *random-state-variable* (environment-of simulation))))))
-    (list* :noise (and (eq simulation *simulation*) (settings-by-name *noise-before-cleaning*))
+    (list* :noise
+           (and (eq simulation *simulation*) (settings-with-string-names *noise-before-cleaning*))
            (and dice (list :dice (random-state-numbers dice))))))
 
 (defun saved-run-head (simulation programs journal)
-  "Return the head of the file for SIMULATION. PROGRAMS is a value of HEAD-FOR-PROGRAMS."
-  (let ((used (append (definitions-of simulation)
-                      (current-definitions (commands-under-way simulation)))))
+  "Return the head of the file for SIMULATION. PROGRAMS is a value of PROGRAM-STATE-FOR-HEAD."
+  (let ((used (append (definitions-depended-on simulation)
+                      (current-definitions (user-commands-in-progress simulation)))))
     (list* :map (qualified-name (map-name (world-map (simulation-world simulation))))
            :robots (robot-names simulation)
            :tick (simulation-tick simulation)
@@ -117,7 +118,7 @@ each of its threads has its own."
            programs)))
 
 (defun write-saved-run (simulation journal programs out)
-  "Write SIMULATION and its JOURNAL, or NIL, to OUT. PROGRAMS is a value of HEAD-FOR-PROGRAMS."
+  "Write SIMULATION and its JOURNAL, or NIL, to OUT. PROGRAMS is a value of PROGRAM-STATE-FOR-HEAD."
   (let* ((requests (waiting-requests simulation))
          (inventory (take-inventory simulation requests))
          (sum 0))
@@ -155,7 +156,7 @@ cannot be saved. Return the truename of FILE."
   (check-not-over simulation 'save-simulation)
   (when (eq simulation *simulation*) (record-settings simulation))
   (record-progress-checked (simulation-world simulation))
-  (let ((programs (head-for-programs simulation)))
+  (let ((programs (program-state-for-head simulation)))
     (call-with-savable-run
      (lambda (simulation journal)
        (overwrite-file (lambda (out) (write-saved-run simulation journal programs out)) file

@@ -18,7 +18,7 @@
                      (damaged-file-reason condition))))
   (:documentation "A file cannot be used: it is damaged or was not saved by the simulator."))
 
-(defun report-damage (condition stream kind operator)
+(defun write-damage-report (condition stream kind operator)
   "Report to STREAM that the file of CONDITION is no usable KIND. Name OPERATOR, which saves one."
   (format stream "~A is no usable ~A: ~A. Save a new file with ~A; nothing was changed."
           (file-name-text (damaged-file-name condition)) kind (damaged-file-reason condition)
@@ -28,14 +28,14 @@
 (define-condition damaged-journal (damaged-file)
   ()
   (:report (lambda (condition stream)
-             (report-damage condition stream "journal" "SAVE-JOURNAL")))
+             (write-damage-report condition stream "journal" "SAVE-JOURNAL")))
   (:documentation "A file that should hold a journal cannot be used."))
 
 (addition damaged-simulation)
 (define-condition damaged-simulation (damaged-file)
   ()
   (:report (lambda (condition stream)
-             (report-damage condition stream "saved run" "SAVE-SIMULATION")))
+             (write-damage-report condition stream "saved run" "SAVE-SIMULATION")))
   (:documentation "A file that should hold a saved run cannot be used."))
 
 ;;; Writing.

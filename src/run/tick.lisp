@@ -51,7 +51,7 @@ change is recorded at the same point of the new journal."
 
 (defun set-noise-to-restore (settings)
   "Make DIRTY-SIMULATION restore SETTINGS, lists (name value), for a replayed journal entry."
-  (setf *noise-before-cleaning* (settings-by-symbol settings))
+  (setf *noise-before-cleaning* (settings-with-symbols settings))
   (record-settings *simulation*))
 
 (define-operator 'cleaning '(datum) #'set-noise-to-restore)
@@ -65,7 +65,7 @@ change is recorded at the same point of the new journal."
                (perform request timeline))
              (take-requests timeline)))
 
-(defun settled-robot-p (robot)
+(defun settling-skippable-p (robot)
   "True if the phase :SETTLING of a tick can be skipped for ROBOT, see WORLD-SETTLED-P."
   (flet ((unsettled-hand-p (hand)
            (or (hand-location hand) (rest (hand-contents hand)) (grip-watched-p hand))))
@@ -74,12 +74,12 @@ change is recorded at the same point of the new journal."
              (some #'camera-location (robot-cameras robot))
              (some #'unsettled-hand-p (robot-hands robot))))))
 
-(defun settle (world)
+(defun update-tracks-and-grips (world)
   "Update the records of parts inside things in WORLD, and the tracks and grips."
   (enforce-containment world)
   (update-tracks world)
   (check-grips world)
-  (setf (world-settled-p world) (every #'settled-robot-p (world-robots world))))
+  (setf (world-settled-p world) (every #'settling-skippable-p (world-robots world))))
 
 (declaim (inline extend-journal))
 (defun extend-journal (simulation)
@@ -126,7 +126,7 @@ thread that owns the world calls this function."
                         (when (timeline-inbox timeline) (perform-requests simulation timeline)))
              (:events (advance-agenda (timeline-agenda timeline)))
              (:kickers (run-kickers world))
-             (:settling (unless (world-settled-p world) (settle world)))
+             (:settling (unless (world-settled-p world) (update-tracks-and-grips world)))
              (:continuations (end-world-changes timeline world)
                              (extend-journal simulation)
                              (deliver-notifications timeline))

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.statistics)
 
-(declaim (inline wilson-low))
-(defun wilson-low (successes failures z)
+(declaim (inline wilson-lower-bound))
+(defun wilson-lower-bound (successes failures z)
   "Return the lower bound of the Wilson interval, computed as a square divided by a sum, so that no
 digits are lost near 0. The formula follows from the product of both bounds."
   (declare (type double-float successes failures z))
@@ -18,8 +18,8 @@ digits are lost near 0. The formula follows from the product of both bounds."
   (if (zerop trials)
       (values 0d0 1d0)
       (let ((failures (double (- trials successes))) (successes (double successes)))
-        (values (wilson-low successes failures z)
-                (- 1 (wilson-low failures successes z))))))
+        (values (wilson-lower-bound successes failures z)
+                (- 1 (wilson-lower-bound failures successes z))))))
 
 (addition wilson-interval)
 (defun wilson-interval (successes trials &key (confidence .95d0))
@@ -31,9 +31,9 @@ and 1; without successes low is 0; without failures high is 1. Signals WRONG-ARG
 is an integer from 0 to 1e9, SUCCESSES from 0 to TRIALS, and CONFIDENCE between 0 and 1."
   (check-trials wilson-interval successes trials)
   (wilson-bounds successes trials
-                 (normal-critical-value (check-unit-share wilson-interval confidence))))
+                 (normal-critical-value (checked-unit-share wilson-interval confidence))))
 
-(defun exact-low (successes trials tail)
+(defun exact-lower-bound (successes trials tail)
   "Return two values: the rate of success at which SUCCESSES or more successes in TRIALS trials have
 the probability TAIL; and 1 minus this rate."
   (if (zerop successes)
@@ -47,9 +47,9 @@ and Pearson 1934; Newcombe 1998, method 5). The interval contains the true proba
 often as CONFIDENCE says, whatever that probability is, so it is wider than WILSON-INTERVAL. For the
 bounds without trials, successes or failures, and for errors, see WILSON-INTERVAL."
   (check-trials exact-interval successes trials)
-  (let ((tail (/ (- 1 (check-unit-share exact-interval confidence)) 2)))
-    (values (nth-value 0 (exact-low successes trials tail))
-            (nth-value 1 (exact-low (- trials successes) trials tail)))))
+  (let ((tail (/ (- 1 (checked-unit-share exact-interval confidence)) 2)))
+    (values (nth-value 0 (exact-lower-bound successes trials tail))
+            (nth-value 1 (exact-lower-bound (- trials successes) trials tail)))))
 
 (defun corrected-correlation (both first second neither)
   "Return the correlation of paired outcomes, continuity-corrected (Newcombe 1998, method 10)."
@@ -85,7 +85,7 @@ sum are integers from 0 to 1e9, and CONFIDENCE is between 0 and 1."
   (check-count paired-proportion-interval first (- +largest+ both))
   (check-count paired-proportion-interval second (- +largest+ both first))
   (check-count paired-proportion-interval neither (- +largest+ both first second))
-  (let ((z (normal-critical-value (check-unit-share paired-proportion-interval confidence)))
+  (let ((z (normal-critical-value (checked-unit-share paired-proportion-interval confidence)))
         (trials (+ both first second neither)))
     (if (zerop trials)
         (values -1d0 1d0)
@@ -114,8 +114,8 @@ mean less often: for an exponential distribution and .95, in 89 % of samples of 
 samples of 30, and 94 % of samples of 50. BOOTSTRAP-INTERVAL is no better for skewed distributions.
 If all numbers are equal, both bounds are that number; for fewer than two numbers, both bounds are
 NIL. Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
-  (let ((confidence (check-unit-share student-interval confidence)))
-    (student-bounds (sample 'student-interval 'numbers numbers) confidence)))
+  (let ((confidence (checked-unit-share student-interval confidence)))
+    (student-bounds (checked-sample 'student-interval 'numbers numbers) confidence)))
 
 (defun check-same-length (operator name seconds firsts)
   (unless (= (length firsts) (length seconds))
@@ -130,9 +130,9 @@ the STUDENT-INTERVAL of the differences FIRSTS - SECONDS (Student 1908). FIRSTS 
 lists or vectors whose elements form pairs, such as the ticks of two plans with the same seeds. For
 fewer than two pairs, both bounds are NIL. Signals WRONG-ARGUMENT as STUDENT-INTERVAL does, and if
 FIRSTS and SECONDS have different lengths."
-  (let ((confidence (check-unit-share mean-difference-interval confidence))
-        (firsts (sample 'mean-difference-interval 'firsts firsts))
-        (others (sample 'mean-difference-interval 'seconds seconds)))
+  (let ((confidence (checked-unit-share mean-difference-interval confidence))
+        (firsts (checked-sample 'mean-difference-interval 'firsts firsts))
+        (others (checked-sample 'mean-difference-interval 'seconds seconds)))
     (check-same-length 'mean-difference-interval 'seconds seconds firsts)
     (student-bounds (map 'doubles #'- firsts others) confidence)))
 
@@ -155,8 +155,8 @@ vector, are a sample of the distribution. The bounds are two of NUMBERS, as far 
 the greatest as CONFIDENCE allows (David and Nagaraja 2003, Order Statistics, 7.1). All three values
 are NIL if there are too few numbers: for .95, fewer than six. Signals WRONG-ARGUMENT unless NUMBERS
 are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
-  (let* ((confidence (check-unit-share median-interval confidence))
-         (sample (sort-sample (sample 'median-interval 'numbers numbers)))
+  (let* ((confidence (checked-unit-share median-interval confidence))
+         (sample (sort-sample (checked-sample 'median-interval 'numbers numbers)))
          (size (length sample))
          (rank (median-bound-rank size (/ (- 1 confidence) 2))))
     (if (zerop rank)
@@ -173,7 +173,7 @@ are from -1e15 to 1e15, and CONFIDENCE between 0 and 1."
   "Return a function that calls FUNCTION and signals WRONG-ARGUMENT if the value is not a number."
   (lambda (sample)
     (let ((value (funcall function sample)))
-      (unless (quantity-p value)
+      (unless (bounded-number-p value)
         (reject-argument 'bootstrap-interval 'statistic function
                          "a function that returns a number from -1e15 to 1e15"))
       (double value))))
@@ -257,8 +257,8 @@ seeds the draws, so the bounds are the same each time.
 
 Signals WRONG-ARGUMENT unless NUMBERS and the values of STATISTIC are from -1e15 to 1e15, RESAMPLES
 from 100 to 1e7, and CONFIDENCE between 0 and 1."
-  (let ((z (normal-critical-value (check-unit-share bootstrap-interval confidence)))
-        (sample (sample 'bootstrap-interval 'numbers numbers))
+  (let ((z (normal-critical-value (checked-unit-share bootstrap-interval confidence)))
+        (sample (checked-sample 'bootstrap-interval 'numbers numbers))
         (function (case statistic
                     (:mean #'mean-of)
                     (:median #'median-of)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.statistics)
 
-(export '(mean median as-written))
+(export '(mean median share-as-double))
 
 (deftype doubles ()
   "A sample, as functions of this package use it internally."
@@ -12,27 +12,27 @@
   "True if VALUE is a list or vector whose elements all pass TEST."
   (and (or (vectorp value) (proper-list-p value)) (every test value)))
 
-(defun sample (operator name numbers)
+(defun checked-sample (operator name numbers)
   "Return NUMBERS, the argument NAME of OPERATOR, as a fresh vector of double-floats. Signals
 WRONG-ARGUMENT unless NUMBERS is a list or vector of numbers from -1e15 to 1e15."
-  (unless (every-element-p numbers #'quantity-p)
+  (unless (every-element-p numbers #'bounded-number-p)
     (reject-argument operator name numbers "a list or vector of numbers from -1e15 to 1e15"))
   (map 'doubles #'double numbers))
 
-(defun as-written (share)
+(defun share-as-double (share)
   "Return SHARE as a double-float: the single-float .95 is .95, not 0.949999988."
   (double (if (typep share 'single-float) (rationalize share) share)))
 
 (defun inside-unit-interval-p (value)
   "True if VALUE is a number between 0 and 1, at least 1e-12 from 0 and from 1."
-  (and (probability-p value) (<= 1d-12 (as-written value) (- 1 1d-12))))
+  (and (probability-p value) (<= 1d-12 (share-as-double value) (- 1 1d-12))))
 
-(defmacro check-unit-share (operator place)
+(defmacro checked-unit-share (operator place)
   "Return the value of PLACE as a double-float. Signal WRONG-ARGUMENT unless it is between 0 and 1."
   `(progn
      (check-argument ,operator ,place (inside-unit-interval-p ,place)
                      "a number between 0 and 1, such as .95, at least 1e-12 from both")
-     (as-written ,place)))
+     (share-as-double ,place)))
 
 (defmacro check-count (operator place &optional (most '+largest+))
   "Signal WRONG-ARGUMENT unless PLACE is an integer from 0 to MOST."
@@ -143,11 +143,11 @@ which SAMPLE, at least two numbers, is a sample."
 (defun mean (numbers)
   "Return the mean of NUMBERS, a list or vector, as a double-float; or NIL if NUMBERS is empty.
 Signals WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15."
-  (let ((sample (sample 'mean 'numbers numbers)))
+  (let ((sample (checked-sample 'mean 'numbers numbers)))
     (when (plusp (length sample)) (mean-of sample))))
 
 (defun median (numbers)
   "Return the median of NUMBERS, a list or vector; or NIL if NUMBERS is empty. Signals
 WRONG-ARGUMENT unless NUMBERS are from -1e15 to 1e15."
-  (let ((sample (sample 'median 'numbers numbers)))
+  (let ((sample (checked-sample 'median 'numbers numbers)))
     (when (plusp (length sample)) (sorted-quantile (sort-sample sample) .5d0))))

@@ -35,7 +35,7 @@ the elements of DATED that have this time."
                (funcall function start end))
              (setf start end))))
 
-(defun count-done (dated start end)
+(defun count-done-trials (dated start end)
   (count t dated :key #'second :start start :end end))
 
 ;;; The curve.
@@ -62,11 +62,11 @@ scale of log(-log) (Kalbfleisch and Prentice 2002, chapter 1). The formula gives
 survival of 0: then LOW is 0, and HIGH is the previous HIGH, or 1. Signals WRONG-ARGUMENT unless
 TIMES are from 0 to 1e15, EVENTS has the same length, and CONFIDENCE is between 0 and 1."
   (check-survival-arguments 'survival-curve 'times times 'events events)
-  (let* ((z (normal-critical-value (check-unit-share survival-curve confidence)))
+  (let* ((z (normal-critical-value (checked-unit-share survival-curve confidence)))
          (dated (sorted-events times events)) (size (length dated))
          (survival 1d0) (variance 0d0) (highest 1d0) (steps '()))
     (flet ((note (start end)
-             (let* ((at-risk (- size start)) (done (count-done dated start end))
+             (let* ((at-risk (- size start)) (done (count-done-trials dated start end))
                     (left (- at-risk done)))
                (setf survival (* survival (/ (double left) at-risk)))
                (when (plusp left) (incf variance (/ (double done) at-risk left)))
@@ -94,7 +94,7 @@ Crowley 1982). A value is NIL if there is no such time. Signals WRONG-ARGUMENT."
 
 ;;; Two groups.
 
-(defun expected-and-variance (at-risk first-at-risk done)
+(defun log-rank-expectation-and-variance (at-risk first-at-risk done)
   "At some time, AT-RISK trials are at risk, FIRST-AT-RISK of them in the first group, and DONE
 events occur. Return the expected number of events in the first group, and the number's variance."
   (let ((share (/ first-at-risk at-risk)))
@@ -114,8 +114,8 @@ variance. Elements of the first group are marked."
              (incf observed (count-if (lambda (one) (and (second one) (third one))) dated
                                       :start start :end end))
              (multiple-value-bind (mean spread)
-                 (expected-and-variance (- (length dated) start) (- marked gone)
-                                        (count-done dated start end))
+                 (log-rank-expectation-and-variance (- (length dated) start) (- marked gone)
+                                                    (count-done-trials dated start end))
                (incf expected mean)
                (incf variance spread))))
       (map-event-times #'note dated))

@@ -55,7 +55,7 @@ integers from 0 to 1e9."
   (declare (type double-float x))
   (- x (logarithm (* 2 (- 1 (negative-sign-probability x))))))
 
-(defun tilted-sum (sizes shares dice)
+(defun draw-tilted-sum (sizes shares dice)
   (declare (type doubles sizes shares) (type dice dice) #.*hot*)
   (loop with sum of-type double-float = 0d0
         for size across sizes
@@ -72,12 +72,12 @@ SUM or at most -SUM. The probability is estimated by RESAMPLES draws of tilted s
     (flet ((weight (sum) (exponential (max -700d0 (- logs (* tilt sum))))))
       (/ (loop with weights = (weight sum)
                repeat resamples
-               for drawn = (tilted-sum sizes shares dice)
+               for drawn = (draw-tilted-sum sizes shares dice)
                when (>= drawn (- sum grain)) do (incf weights (weight drawn))
                finally (return (* 2 weights)))
          (1+ resamples)))))
 
-(defun rare-share (sizes sum grain resamples dice)
+(defun rare-tail-probability (sizes sum grain resamples dice)
   "Return the probability that the sum of SIZES with random signs is at least SUM or at most -SUM,
 estimated by importance sampling, for small probabilities."
   (let ((largest (reduce #'max sizes)))
@@ -98,7 +98,7 @@ estimated by importance sampling, for small probabilities."
   "A cons of a sorted vector of sums and a vector of their probabilities."
   '(cons doubles doubles))
 
-(defun merge-sums (sums difference grain)
+(defun add-signed-difference (sums difference grain)
   "Return the sums that result from SUMS if DIFFERENCE, 0 or more, is added or subtracted with equal
 probability. Sums closer than GRAIN are joined."
   (declare (type sums sums) (type double-float difference grain) #.*hot*)
@@ -125,7 +125,7 @@ probability. Sums closer than GRAIN are joined."
                             (incf j))))))
       (cons (subseq new 0 count) (subseq new-odds 0 count)))))
 
-(defun exact-share (sizes sum grain)
+(defun exact-tail-probability (sizes sum grain)
   "Return the exact probability that the sum of SIZES with random signs is at least SUM or at most
 -SUM; or NIL if this takes too long. Sums that differ by at most GRAIN are equal."
   (loop with sums = (cons (coerce '(0d0) 'doubles) (coerce '(1d0) 'doubles))
@@ -133,27 +133,27 @@ probability. Sums closer than GRAIN are joined."
         for left downfrom (length sizes)
         when (> (* left (length (the doubles (car sums)))) *most-exact-sums*)
           do (return nil)
-        do (setf sums (merge-sums sums size grain))
+        do (setf sums (add-signed-difference sums size grain))
         finally (return (loop for found across (the doubles (car sums))
                               for odds across (the doubles (cdr sums))
                               when (>= (abs found) (- sum grain)) sum odds))))
 
-(defun drawn-share (sizes sum grain resamples dice)
+(defun drawn-tail-probability (sizes sum grain resamples dice)
   "Return the share of RESAMPLES draws of random signs in which the sum of SIZES is at least SUM or
 at most -SUM. The observed sum counts as a draw, so the share is never 0 (Phipson and Smyth 2010)."
   (let ((shares (map 'doubles (constantly .5d0) sizes)))
     (/ (double (1+ (loop repeat resamples
-                         count (>= (abs (tilted-sum sizes shares dice)) (- sum grain)))))
+                         count (>= (abs (draw-tilted-sum sizes shares dice)) (- sum grain)))))
        (1+ resamples))))
 
-(defconstant +rare-share-limit+ .05d0
+(defconstant +rare-probability-limit+ .05d0
   "The largest p value that is estimated again with tilted signs if RARE-TOO is true.")
 
-(defun share-by-draws (sizes sum grain resamples seed rare-too)
-  "Return the DRAWN-SHARE. If it is small and RARE-TOO is true, return the RARE-SHARE instead."
-  (let ((share (drawn-share sizes sum grain resamples (make-dice seed "permutation"))))
-    (if (and rare-too (<= share +rare-share-limit+))
-        (rare-share sizes sum grain resamples (make-dice seed "rare signs"))
+(defun estimated-tail-probability (sizes sum grain resamples seed rare-too)
+  "Return the DRAWN-TAIL-PROBABILITY. If it is small and RARE-TOO is true, return the RARE-TAIL-PROBABILITY instead."
+  (let ((share (drawn-tail-probability sizes sum grain resamples (make-dice seed "permutation"))))
+    (if (and rare-too (<= share +rare-probability-limit+))
+        (rare-tail-probability sizes sum grain resamples (make-dice seed "rare signs"))
         share)))
 
 (addition permutation-test)
@@ -173,14 +173,14 @@ Sums that differ only by rounding count as equal. Without numbers, or if all num
 for N numbers p is at least 2^(1-N). Signals WRONG-ARGUMENT unless DIFFERENCES are from -1e15 to
 1e15, and RESAMPLES from 100 to 1e7."
   (check-resampling permutation-test resamples seed)
-  (let* ((sample (sample 'permutation-test 'differences differences))
+  (let* ((sample (checked-sample 'permutation-test 'differences differences))
          (sum (abs (sum sample)))
          (sizes (sort-sample (map 'doubles #'abs (remove-if #'zerop sample))))
          (grain (* 1d-13 (sum sizes)))
-         (exact (exact-share sizes sum grain)))
+         (exact (exact-tail-probability sizes sum grain)))
     (if exact
         (values (min 1d0 exact) t)
-        (values (share-by-draws sizes sum grain resamples seed rare-too) nil))))
+        (values (estimated-tail-probability sizes sum grain resamples seed rare-too) nil))))
 
 ;;;; Several tests
 
@@ -192,7 +192,7 @@ probability that any of these results is wrong is at most .05. The order is kept
 have equal results. Signals WRONG-ARGUMENT unless P-VALUES are numbers from 0 to 1."
   (check-argument holm-adjusted p-values (every-element-p p-values #'probability-p)
                   "a list or vector of numbers from 0 to 1")
-  (let ((shares (map 'doubles #'as-written p-values)))
+  (let ((shares (map 'doubles #'share-as-double p-values)))
     (loop with worth = 0d0
           for index in (stable-sort (loop for i below (length shares) collect i) #'<
                                     :key (lambda (i) (aref shares i)))
@@ -211,7 +211,7 @@ with a confidence of 1 minus the returned level, the probability that any of the
 wrong is at most LEVEL (Bonferroni's inequality, spent as in Lan and DeMets 1983). Signals
 WRONG-ARGUMENT unless LOOK is an integer from 1 to 100,000, and LEVEL between 0 and 1."
   (check-argument sequential-level look (whole-p look 1 100000) "an integer from 1 to 100000")
-  (/ (check-unit-share sequential-level level) (* look (1+ look))))
+  (/ (checked-unit-share sequential-level level) (* look (1+ look))))
 
 (defun log-evidence (successes trials rate)
   (declare (type double-float rate))
@@ -228,7 +228,7 @@ Robbins 1970, the mixture of binomials; Howard, Ramdas, McAuliffe and Sekhon 202
 the evidence is 0; a value below 0 supports RATE. Signals WRONG-ARGUMENT unless TRIALS is an integer
 from 0 to 1e9, SUCCESSES from 0 to TRIALS, and RATE between 0 and 1."
   (check-trials rate-evidence successes trials)
-  (log-evidence successes trials (check-unit-share rate-evidence rate)))
+  (log-evidence successes trials (checked-unit-share rate-evidence rate)))
 
 (addition rate-verdict)
 (defun rate-verdict (successes trials rate &key (level .05d0))
@@ -237,7 +237,7 @@ success is above or below RATE; or NIL if they do not show either yet. You may c
 after each trial and stop when the value is not NIL: if the true probability is RATE, the
 probability that you ever stop is at most LEVEL, between 0 and 1. For errors see RATE-EVIDENCE."
   (check-trials rate-verdict successes trials)
-  (let ((rate (check-unit-share rate-verdict rate)))
+  (let ((rate (checked-unit-share rate-verdict rate)))
     (when (>= (log-evidence successes trials rate)
-              (- (logarithm (check-unit-share rate-verdict level))))
+              (- (logarithm (checked-unit-share rate-verdict level))))
       (if (> successes (* rate trials)) :above :below))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(event agenda make-agenda queue-event queue-again +longest-delay+ cancel-event
+(export '(event agenda make-agenda queue-event requeue-event +longest-delay+ cancel-event
           interrupt-event pending-event advance-agenda pending-events request-name
           note-interruption interruption))
 
@@ -116,26 +116,26 @@ a RESOURCE structure; lists and strings are the same resource if they look the s
 
 ;;; Queueing and cancelling.
 
-(declaim (inline activate deactivate queue-again))
-(defun activate (agenda event)
+(declaim (inline mark-event-pending mark-event-not-pending requeue-event))
+(defun mark-event-pending (agenda event)
   (setf (event-pending-p event) t)
   (incf (agenda-pending agenda))
   (unless (zerop (event-priority event)) (incf (agenda-unequal agenda))))
 
-(defun deactivate (agenda event)
+(defun mark-event-not-pending (agenda event)
   (setf (event-pending-p event) nil)
   (decf (agenda-pending agenda))
   (unless (zerop (event-priority event)) (decf (agenda-unequal agenda))))
 
 (defconstant +longest-delay+ (ash 1 59) "The largest delay of an event, in ticks.")
 
-(defun queue-again (agenda event delay)
+(defun requeue-event (agenda event delay)
   "Queue EVENT, which is not pending, to run DELAY ticks from now (at least 1). See reading 79."
   (declare (type tick-count delay))
   (when (event-queued-p event)
     (reject-use "An event that is still in the queue cannot be queued again."))
   (setf (event-time event) (the tick-count (+ (agenda-tick agenda) (max 1 delay))))
-  (activate agenda event)
+  (mark-event-pending agenda event)
   (when (event-resource event) (set-pending-event agenda event (event-resource event)))
   (put-in-bucket agenda event))
 
@@ -146,13 +146,13 @@ RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is c
     (setf (event-resource event) resource
           (event-priority event) priority
           (event-interrupt event) interrupt)
-    (queue-again agenda event delay)
+    (requeue-event agenda event delay)
     event))
 
 (defun cancel-event (agenda event)
   "Remove EVENT from AGENDA if it is pending. No handler is called."
   (when (event-pending-p event)
-    (deactivate agenda event)
+    (mark-event-not-pending agenda event)
     (set-pending-event agenda nil (event-resource event))))
 
 (defun interrupt-event (agenda event)
@@ -168,23 +168,23 @@ RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is c
   (declare #.*hot* (type agenda agenda) (type event event))
   (setf (event-queued-p event) nil)
   (when (event-pending-p event)
-    (deactivate agenda event)
+    (mark-event-not-pending agenda event)
     (when (event-resource event) (set-pending-event agenda nil (event-resource event)))
     (funcall (event-function event) event)))
 
-(defun run-in-order (agenda event)
+(defun run-events-in-order (agenda event)
   "Run EVENT and the events after it. If an event exits non-locally, still run the events after it."
   (declare #.*hot* (type agenda agenda))
   (unwind-protect
        (loop while event
              do (run-if-pending agenda (shiftf event (event-next (the event event)))))
-    (when event (run-in-order agenda event))))
+    (when event (run-events-in-order agenda event))))
 
 (defun run-bucket (agenda last)
   (declare #.*hot* (type agenda agenda))
   (let ((first (detach-ring last)))
     (cond ((eq first last) (run-if-pending agenda first))
-          ((zerop (agenda-unequal agenda)) (run-in-order agenda first))
+          ((zerop (agenda-unequal agenda)) (run-events-in-order agenda first))
           (t (call-each (lambda (event) (run-if-pending agenda event))
                         (stable-sort (loop for event = first then (event-next event)
                                            while event collect event)
@@ -228,7 +228,7 @@ RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is c
     (setf (agenda-tick copy) (agenda-tick agenda))
     (dolist (event (pending-events agenda) copy)
       (let ((twin (forked event fork)) (resource (event-resource event)))
-        (activate copy twin)
+        (mark-event-pending copy twin)
         (unless (resource-p resource) (set-pending-event copy twin (forked resource fork)))
         (put-in-bucket copy twin)))))
 

@@ -31,7 +31,7 @@ still. Return its values."
   ;; True if the asking thread no longer waits.
   (given-up-p nil :type t))
 
-(defun note-trouble (question condition)
+(defun note-question-trouble (question condition)
   (setf (question-trouble question)
         (if (typep condition 'serious-condition) condition :aborted)))
 
@@ -46,7 +46,7 @@ still. Return its values."
       (handler-case
           (answering-debugger ((lambda (condition somebody-p)
                                  (unless somebody-p
-                                   (note-trouble question condition)
+                                   (note-question-trouble question condition)
                                    (throw 'no-answer nil))))
             (catch 'no-answer
               (setf (question-values question)
@@ -54,10 +54,10 @@ still. Return its values."
                                            (funcall (question-function question))))
                     (question-trouble question) nil)))
         ((and serious-condition (satisfies condition-for-asker-p)) (condition)
-          (note-trouble question condition)))
+          (note-question-trouble question condition)))
     (abort () :report "Tell the asking thread that it was aborted.")))
 
-(defun answer (question)
+(defun answer-question (question)
   (unless (question-given-up-p question)
     (in-any-case
       (compute-answer question)
@@ -92,7 +92,7 @@ still. Return its values."
 (defun ask-owner (custody function)
   (check-outside-ticks)
   (let ((question (make-question (keeping-seclusion function))))
-    (atomic-push (lambda () (answer question)) (custody-questions custody))
+    (atomic-push (lambda () (answer-question question)) (custody-questions custody))
     (wake-if-asleep custody)
     (in-any-case
       (await-answer question custody)
@@ -106,7 +106,7 @@ ALLOWING-INTERRUPTS. Return nothing."
   (let ((custody (timeline-custody (timeline-of object)))
         (question (make-question (keeping-seclusion function))))
     (deferring-interrupts
-      (atomic-push (lambda () (deferring-interrupts (answer question)))
+      (atomic-push (lambda () (deferring-interrupts (answer-question question)))
                    (custody-questions custody))
       ;; If this thread gets custody, it answers when it gives that up.
       (call-with-custody custody (constantly nil) (lambda () (wake-if-asleep custody))))

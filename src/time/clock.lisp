@@ -52,10 +52,10 @@
 (defun pause-after-failure (pacing trouble)
   "Pause the clock of PACING because of the condition TROUBLE, an error in the simulator itself."
   (let ((text (format nil "The simulator failed and is paused; RESUME continues: ~A"
-                      (brief-text trouble))))
+                      (brief-condition-text trouble))))
     (queue-user-error trouble text text))
   (setf (pacing-paused-p pacing) t
-        (pacing-trouble pacing) (brief-text trouble)))
+        (pacing-trouble pacing) (brief-condition-text trouble)))
 
 (defun pass-tick (pacing)
   "Pass a tick. An error in the simulator, not in users' code, is reported and pauses the clock."
@@ -94,7 +94,7 @@
     (setf (pacing-over-p pacing) t)
     (signal-semaphore (pacing-ended pacing))))
 
-(defun run-thread (pacing ready start)
+(defun run-pacing-thread (pacing ready start)
   "Signal the semaphore READY when this thread can be ended at any moment. Wait for the semaphore
 START. Then pass ticks at the pace of PACING, if this thread has got custody."
   (let* ((custody (pacing-custody pacing))
@@ -112,7 +112,7 @@ START. Then pass ticks at the pace of PACING, if this thread has got custody."
   (let ((name (format nil "simulator of ~A" (timeline-name (pacing-timeline pacing)))))
     (setf (pacing-thread pacing)
           (start-thread (lambda ()
-                          (funcall caller (lambda () (run-thread pacing ready start))))
+                          (funcall caller (lambda () (run-pacing-thread pacing ready start))))
                         name))
     (start-thread (lambda () (funcall caller (lambda () (watch-for-hogs pacing))))
                   (format nil "watcher of the ~A" name))))

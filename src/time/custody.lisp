@@ -60,9 +60,9 @@ values of the call. FUNCTION and OTHERWISE are interruptible if this thread was 
               (let* ((held (cons custody *held-custodies*)) (*held-custodies* held))
                 (declare (dynamic-extent held))
                 (in-any-case
-                  (call-interruptible open-p function)
+                  (call-allowing-interrupts-if open-p function)
                   (give-up-custody custody)))
-              (call-interruptible open-p otherwise))))))
+              (call-allowing-interrupts-if open-p otherwise))))))
 
 (defun hand-over-custody (custody thread)
   (setf (custody-thread custody) thread))

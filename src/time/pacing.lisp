@@ -3,7 +3,7 @@
 (in-package :ars-magna.time)
 
 (export '(timeline-thread pacing-thread-p check-rate clock-trouble *waits-while-paused-p*
-          pass-then-pause pace hog-seconds seconds-now stop-pacing claim-pacing claimed-p
+          pass-then-pause pace hog-seconds seconds-now stop-pacing claim-pacing pacing-claimed-p
           unclaim-pacing call-without-clock users-code-in-progress users-code-in-debugger-p
           abort-hog))
 
@@ -136,7 +136,7 @@ RATE. Signals WRONG-ARGUMENT."
 
 ;;; The thread ends after its tick. Endless user code is aborted only when somebody stops the run.
 
-(defun wait-for-end (pacing seconds)
+(defun wait-for-thread-end (pacing seconds)
   (loop with due = (+ (seconds-now) seconds)
         ;; A thread that was woken may have been interrupted before it could wake the next one.
         when (or (pacing-over-p pacing)
@@ -152,11 +152,11 @@ RATE. Signals WRONG-ARGUMENT."
       (interrupt-thread (pacing-thread pacing) (lambda () (abort-user-code count)))
       t)))
 
-(defun await-end (pacing)
+(defun force-thread-end (pacing)
   "Wait for the thread of PACING to end. Repeatedly interrupt users' code that does not return.
 Signals MISUSE if the thread does not end."
   (loop repeat 10
-        when (wait-for-end pacing (hog-seconds))
+        when (wait-for-thread-end pacing (hog-seconds))
           return t
         do (interrupt-hog pacing)
         finally (let ((origin (user-calls-origin (pacing-calls pacing))))
@@ -164,19 +164,19 @@ Signals MISUSE if the thread does not end."
                               (timeline-name (pacing-timeline pacing))
                               (and origin (text-of-origin origin))))))
 
-(defun stop (pacing)
+(defun stop-pacing-thread (pacing)
   "End the thread of PACING after its current tick; if it is another thread, wait for its end."
   (swap-if-eq (pacing-stopping-p pacing) nil t)
   (wake-clock pacing)
   (unless (eq (pacing-thread pacing) (current-thread))
-    (await-end pacing)))
+    (force-thread-end pacing)))
 
 (defun claim-pacing (timeline)
   "Ask the thread that paces TIMELINE to end after its current tick, because this thread will
 replace the run. Return true if the run was live and no thread had stopped it."
   (if-paced (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) nil :replaced)))
 
-(defun claimed-p (timeline)
+(defun pacing-claimed-p (timeline)
   "True if CLAIM-PACING has returned true for TIMELINE without a later call of UNCLAIM-PACING."
   (if-paced (pacing timeline) (eq :replaced (pacing-stopping-p pacing))))
 
@@ -188,7 +188,7 @@ replace the run. Return true if the run was live and no thread had stopped it."
   "End the thread that paces TIMELINE after its current tick. If that is another thread, wait until
 it has ended. Return TIMELINE. Signals MISUSE if the thread is in users' code that cannot be
 interrupted."
-  (if-paced (pacing timeline) (stop pacing))
+  (if-paced (pacing timeline) (stop-pacing-thread pacing))
   timeline)
 
 (defun call-without-clock (timeline function)
@@ -200,7 +200,7 @@ interrupted."
                                    (lambda ()
                                      (let ((pacing (custody-pacing custody)))
                                        (if pacing
-                                           (stop pacing)
+                                           (stop-pacing-thread pacing)
                                            (ask-owner custody (constantly nil))))
                                      (return-from busy))))))))
 
@@ -210,7 +210,7 @@ interrupted."
 (defun watch-for-hogs (pacing)
   "Warn about users' code that does not return to the thread of PACING, until that thread ends."
   (loop with calls = (pacing-calls pacing) and seen = nil and looks = 0
-        until (wait-for-end pacing (/ (hog-seconds) 2))
+        until (wait-for-thread-end pacing (/ (hog-seconds) 2))
         do (let ((origin (user-calls-origin calls)) (count (user-calls-count calls)))
              (cond ((or (null origin) (/= count (or seen -1)) (user-calls-waiting-p calls))
                     (setf seen (and origin count) looks 1))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(call-scheduled interrupt-resources release-resource scheduled))
+(export '(schedule-call interrupt-resources release-resource scheduled))
 
 ;;; Requests for a resource, by SCHEDULE, GRAB-RESOURCE or a command, are performed in the order in
 ;;; which they were made, at the start of the next tick. Of two events of SCHEDULE, the one with the
@@ -51,15 +51,15 @@
     (cond ((or (minusp left) (expires-first-p event)))
           ((or (null test) (call-user-code test "a scheduled event's :when"))
            (call-user-code (scheduled-body event) "a scheduled event"))
-          ((plusp left) (queue-again (scheduled-agenda event) event 1)))))
+          ((plusp left) (requeue-event (scheduled-agenda event) event 1)))))
 
 (defun enter-event (event agenda)
   (setf (scheduled-agenda event) agenda
         (scheduled-deadline event) (and (scheduled-test event) (scheduled-timeout event)
                                         (+ (agenda-tick agenda) (scheduled-timeout event))))
-  (queue-again agenda event (if (expires-first-p event)
-                                (scheduled-timeout event)
-                                (scheduled-timer event))))
+  (requeue-event agenda event (if (expires-first-p event)
+                                  (scheduled-timeout event)
+                                  (scheduled-timer event))))
 
 (defmethod perform ((event scheduled) timeline)
   (let* ((agenda (timeline-agenda timeline))
@@ -72,9 +72,9 @@
                (interrupt-event agenda rival))
              (enter-event event agenda)))))
 
-(defun call-scheduled (function resource
-                       &key (priority 0) interrupt when timeout (timer 1)
-                            (simulation (current-simulation)))
+(defun schedule-call (function resource
+                      &key (priority 0) interrupt when timeout (timer 1)
+                           (simulation (current-simulation)))
   "Request an event that calls FUNCTION. The arguments are those of SCHEDULE. Returns nothing.
 Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
   (check-argument schedule priority (typep priority 'fixnum) "an integer")
@@ -92,8 +92,8 @@ Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
 
 (define-operator 'schedule '(function datum integer datum datum datum integer)
   (lambda (function resource priority interrupt when timeout timer)
-    (call-scheduled function resource :priority priority :interrupt interrupt :when when
-                                      :timeout timeout :timer timer)))
+    (schedule-call function resource :priority priority :interrupt interrupt :when when
+                                     :timeout timeout :timer timer)))
 
 (defun intended-delay (head body)
   "Return the number in (schedule HEAD . BODY) that the user probably meant as a delay, or NIL."
@@ -129,12 +129,12 @@ Requests for a resource, including commands, are performed in the order in which
 the start of the next tick. A command has the priority 0, and interrupts any event on the resource.
 Returns nothing (manual 3.8). See reading 7."
   (when (test-advice when) (warn-of-style "schedule, :when: ~A" (test-advice when)))
-  `(call-scheduled (lambda () ,@body) ,resource
-                   :priority ,(or priority 0)
-                   :timer ,(or timer 1)
-                   ,@(when timeout `(:timeout ,timeout))
-                   ,@(when interrupt `(:interrupt (lambda () ,interrupt)))
-                   ,@(when when-p `(:when (lambda () ,when)))))
+  `(schedule-call (lambda () ,@body) ,resource
+                  :priority ,(or priority 0)
+                  :timer ,(or timer 1)
+                  ,@(when timeout `(:timeout ,timeout))
+                  ,@(when interrupt `(:interrupt (lambda () ,interrupt)))
+                  ,@(when when-p `(:when (lambda () ,when)))))
 
 ;;; Taking resources away.
 

@@ -15,7 +15,7 @@
     (must-hold (or (null resource)
                    (eq (if (resource-p resource) event nil) (pending-event agenda resource)))
                "~A is not the pending event of its resource" event)
-    (activate agenda event)
+    (mark-event-pending agenda event)
     (set-pending-event agenda event resource)
     (put-in-bucket agenda event)))
 
@@ -40,7 +40,7 @@ resources of EVENTS must already refer to them. Signals CONTRADICTION."
   (:documentation "Signal CONTRADICTION unless REQUEST, loaded from a file, can be performed. A
 layer that adds a kind of request adds a method.")
   (:method (request)
-    (contradict "~A is not a kind of request" (type-of request))))
+    (signal-contradiction "~A is not a kind of request" (type-of request))))
 
 (defmethod check-request ((grab grab))
   (must-hold (typep (request-arguments grab) '(cons t null)) "a resource to be taken is missing")

@@ -3,9 +3,10 @@
 (in-package :ars-magna.time)
 
 (export '(timeline make-timeline timeline-p timeline-of timeline-tick phase-in-this-thread
-          count-moment check-not-over check-own-run check-not-secluded with-seclusion wake-owner
+          record-code-moment check-not-over check-own-run check-not-secluded with-seclusion
+          wake-owner
           post post-again take-requests requested-inside-tick-p owner-p *repeated-timeline*
-          continuation-suppressed-p notify-later deliver-notifications check-thinking
+          continuation-suppressed-p notify-later deliver-notifications check-thinking-mode
           thinking-modes-text thinking-mode-p timeline-thinking set-timeline-thinking
           choose-plan-threads thinking-charged-p thinking-budget))
 
@@ -30,7 +31,8 @@
    (real-p nil boolean "plans think in a separate thread while the clock runs" :export))
   (:state
    (agenda (make-agenda) agenda "the events that wait for their ticks" :part :export)
-   (charge '() list "the cost of thinking: NIL for no ticks, or a plist; see THINKING-CHARGE"))
+   (charge '() list
+           "the cost of thinking: NIL for no ticks, or a plist; see CHARGE-OF-THINKING-MODE"))
   ;; Requests are not part of a run's state before they are taken.
   (:scratch
    (inbox '() t "the requests that wait for the next tick, newest first" :export)
@@ -118,7 +120,7 @@ a part of a robot. Signals WRONG-ARGUMENT for any other object.")
 ;;; Plans are copied to forks and act there by themselves; other askers do not. To repeat acts of
 ;;; others at the right moment, their order among the acts of plans must be known.
 
-(defun count-moment (timeline)
+(defun record-code-moment (timeline)
   "Record that code is about to run in a tick of TIMELINE that changed the world. Forks repeat it."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
@@ -169,7 +171,7 @@ over (reading 219)."
   (let ((timeline (timeline-of object)))
     (check-own-run timeline)
     (check-not-over timeline)
-    (setf (request-asker request) (note-of-asker)
+    (setf (request-asker request) (current-asker-note)
           (request-phase request) (phase-in-this-thread timeline))
     (atomic-push request (timeline-inbox timeline))
     ;; The run may have ended just now, and the inbox may have been emptied for the last time.
@@ -241,7 +243,7 @@ first; in each group, the oldest comes first."
 ;;; The cost of thinking is part of the run's state. A separate thread only affects the requests to
 ;;; the run, and these are in the journal.
 
-(defun thinking-charge (mode)
+(defun charge-of-thinking-mode (mode)
   "Return the cost of thinking in MODE, a plist or NIL for no ticks; and true if MODE is valid."
   (cond ((member mode '(:free :real)) (values nil t))
         ((member mode '(:charged (:charged)) :test #'cl:equal) (values '(:charged t) t))
@@ -251,14 +253,14 @@ first; in each group, the oldest comes first."
 
 (defun thinking-mode-p (mode)
   "True if MODE is a thinking mode that SET-THINKING accepts."
-  (nth-value 1 (thinking-charge mode)))
+  (nth-value 1 (charge-of-thinking-mode mode)))
 
 (defun thinking-modes-text ()
   "Return a text that lists the thinking modes."
   (format nil ":FREE, :REAL, :CHARGED, or (:CHARGED :BUDGET steps), where steps is the number of ~
                steps of plans in a tick, a whole number from 1 to 1e9"))
 
-(defun check-thinking (operator mode)
+(defun check-thinking-mode (operator mode)
   "Signal WRONG-ARGUMENT, as an error of OPERATOR, unless MODE is a thinking mode."
   (unless (thinking-mode-p mode)
     (reject-argument operator 'thinking mode (thinking-modes-text))))
@@ -273,7 +275,7 @@ first; in each group, the oldest comes first."
 
 (defun set-timeline-thinking (timeline mode)
   "Set the thinking mode of TIMELINE to MODE."
-  (setf (timeline-charge timeline) (thinking-charge mode)
+  (setf (timeline-charge timeline) (charge-of-thinking-mode mode)
         (timeline-real-p timeline) (eq mode :real)))
 
 (defun choose-plan-threads (timeline real)

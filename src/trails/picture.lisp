@@ -20,7 +20,7 @@ the legend. Ways are drawn in this order, too: failed trials, which matter most,
 (defun way-opacity (count)
   (clamp (/ 8 (max 1 count)) 12/100 6/10))
 
-(defun draw-way-outline (canvas points look)
+(defun draw-way-polyline (canvas points look)
   "Draw a line with LOOK through POINTS, x y ... in pixels."
   (destructuring-bind (marker color width dashes words) look
     (declare (ignore marker words))
@@ -31,7 +31,7 @@ the legend. Ways are drawn in this order, too: failed trials, which matter most,
 (defun draw-way (canvas way)
   (let ((look (outcome-look way)))
     (dolist (points (pieces-in-pixels (way-pieces way)))
-      (when (cddr points) (draw-way-outline canvas points look)))))
+      (when (cddr points) (draw-way-polyline canvas points look)))))
 
 (defconstant +end-opacity+ 8/10 "The opacity of the marker at the end of a way.")
 
@@ -83,7 +83,7 @@ points at which SNAPSHOT shows a robot."
 (defun outcome-legend-entry (look opacity text)
   (entry-with-sample (canvas x y) text
     (with-opacity (canvas opacity)
-      (draw-way-outline canvas (list (- x 8) y (+ x 8) y) look))
+      (draw-way-polyline canvas (list (- x 8) y (+ x 8) y) look))
     (with-opacity (canvas +end-opacity+) (draw-end-marker canvas look (+ x 4) y))))
 
 (defun outcome-legend-entries (ways what)
@@ -126,8 +126,9 @@ WAYS are drawn above robots and things."
 
 (defun ways-picture-svg (snapshot ways what &rest look &key layers in-color &allow-other-keys)
   "Return an SVG document that shows SNAPSHOT and WAYS in it. For WHAT see OUTCOME-LEGEND-ENTRIES,
-and for LOOK see FRAMED-TEXT."
-  (apply #'framed-text snapshot (lambda (canvas) (draw-world-and-ways canvas snapshot ways layers))
+and for LOOK see FRAMED-PICTURE-SVG."
+  (apply #'framed-picture-svg snapshot
+         (lambda (canvas) (draw-world-and-ways canvas snapshot ways layers))
          :more (ways-legend-entries snapshot ways what)
          :legend (list :opacity (map-opacity in-color)) look))
 
@@ -136,7 +137,8 @@ and for LOOK see FRAMED-TEXT."
   (if part
       (let ((graphics-scale* 8))
         (remove-if-not (lambda (way)
-                         (way-visible-p (pieces-in-pixels (way-pieces way)) (pixels-of part)))
+                         (way-visible-p (pieces-in-pixels (way-pieces way))
+                                        (points-to-pixels part)))
                        ways))
       ways))
 

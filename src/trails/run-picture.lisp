@@ -94,7 +94,7 @@ robot in the list of robots of its world."
 
 (defun robot-entries-with-ways (snapshot ways)
   "Return legend entries for the robots that are visible in SNAPSHOT or whose WAYS are visible."
-  (loop with box = (pixels-of (shown-part snapshot))
+  (loop with box = (points-to-pixels (shown-part snapshot))
         for way in ways
         for position from 0
         for name = (first way)
@@ -103,16 +103,17 @@ robot in the list of robots of its world."
         else if (find name (snapshot-robots snapshot) :key #'robot-image-name)
                collect (robot-entry (drawn-name name) position)))
 
-(defun start-seen-p (way snapshot)
+(defun way-start-visible-p (way snapshot)
   "True if the ring at the start of WAY is visible in the part of the map that SNAPSHOT shows."
   (and (way-moved-p way)
        (destructuring-bind (x . y) (first (second way))
-         (way-visible-p (list (pixels-of (list x y))) (pixels-of (shown-part snapshot))))))
+         (way-visible-p (list (points-to-pixels (list x y)))
+                        (points-to-pixels (shown-part snapshot))))))
 
 (defun run-legend-entries (snapshot ways spots)
   "Return the entries of the legend for WAYS and SPOTS of a run. SNAPSHOT shows the end of the run."
   (append (robot-entries-with-ways snapshot ways)
-          (when (some (lambda (way) (start-seen-p way snapshot)) ways)
+          (when (some (lambda (way) (way-start-visible-p way snapshot)) ways)
             (list (entry-with-sample (canvas x y) "start of a way"
                     (draw-way-start canvas x y black*))))
           (jump-entries (loop for (nil . pieces) in ways collect (pieces-in-pixels pieces))

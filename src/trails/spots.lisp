@@ -27,7 +27,7 @@
   "Return a list of groups of MOMENTS. Moments less than REACH metres apart are at the same spot. If
 SEVERAL-P is true, texts name the robots."
   (let ((spots '()) (groups '()))
-    (dolist (moment (stable-sort (copy-list moments) #'< :key #'moment-weight)
+    (dolist (moment (stable-sort (copy-list moments) #'< :key #'moment-rank)
                     (nreverse groups))
       (let* ((spot (and (moment-x moment)
                         (or (spot-near moment spots reach)
@@ -38,7 +38,7 @@ SEVERAL-P is true, texts name the robots."
                                    (and (eq spot (moment-group-spot other))
                                         (string= words (moment-group-words other))))
                                  groups)
-                        (first (push (make-moment-group spot words (moment-weight moment))
+                        (first (push (make-moment-group spot words (moment-rank moment))
                                      groups)))))
         (push moment (moment-group-moments group))))))
 
@@ -47,7 +47,7 @@ SEVERAL-P is true, texts name the robots."
       (> (length (moment-group-moments one)) (length (moment-group-moments other)))
       (< (moment-group-weight one) (moment-group-weight other))))
 
-(defun number-spots (groups)
+(defun assign-spot-numbers (groups)
   (let ((spots (remove-duplicates (remove nil (mapcar #'moment-group-spot groups))
                                   :from-end t)))
     (loop for spot in spots for number from 1 do (setf (spot-number spot) number))
@@ -135,7 +135,7 @@ included, all others if LIMIT is NIL. For SEVERAL-P and REACH see GROUP-MOMENTS.
                             :key (lambda (group)
                                    (reduce #'min (moment-group-moments group)
                                            :key #'moment-tick))))
-         (spots (number-spots told)))
+         (spots (assign-spot-numbers told)))
     (values spots
             (append (mapcar (lambda (group) (group-note group (and limit 3))) told)
                     (not-shown-note "Not shown" (loop for group in (nthcdr count all)
@@ -226,7 +226,7 @@ list of the boxes around the numbers."
     (dolist (spot spots boxes)
       (let* ((x (to-pixels (spot-x spot))) (y (to-pixels (spot-y spot)))
              (radius (ring-radius snapshot x y))
-             (place (number-position (pixels-of (shown-part snapshot)) x y radius
+             (place (number-position (points-to-pixels (shown-part snapshot)) x y radius
                                      (append boxes spared) ways)))
         (push (box-around (first place) (second place) +number-radius+) boxes)
         (draw-spot canvas x y radius place (princ-to-string (spot-number spot)))))))

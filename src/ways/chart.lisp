@@ -27,7 +27,7 @@
 
 ;;; Making one.
 
-(defun costs-p (costs)
+(defun place-type-costs-p (costs)
   "True if COSTS is a list of (name cost) in which each name is the name of a place type."
   (and (proper-list-p costs)
        (every (lambda (entry)
@@ -44,7 +44,7 @@ in COSTS, a list of (name cost), a metre costs the given cost, from 1 to 1000. S
 WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument make-chart clearance (and (realp clearance) (<= 0 clearance 10))
                   "a number of metres, from 0 to 10")
-  (check-argument make-chart costs (costs-p costs)
+  (check-argument make-chart costs (place-type-costs-p costs)
                   "a list such as ((doorway 2)), of place types and costs from 1 to 1000")
   (%make-chart (terrain-for-map (find-map-argument 'make-chart map) (rational clearance)
                                 (loop for (name cost) in costs collect (list name (double cost))))))
@@ -143,7 +143,7 @@ cost is 1 or more, or NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT.
 (defun known-field (terrain goal)
   (find goal (terrain-fields terrain) :key #'field-goal))
 
-(defun forget-older-fields (terrain)
+(defun discard-oldest-fields (terrain)
   "Discard the oldest fields of TERRAIN, so that there is room for another field."
   (let ((fields (terrain-fields terrain))
         (most (clamp (floor +nodes-kept+ (length (terrain-cells terrain))) 2 50)))
@@ -154,7 +154,7 @@ cost is 1 or more, or NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT.
   (or (known-field terrain goal)
       (with-lock ((terrain-lock terrain))
         (or (known-field terrain goal)
-            (let ((field (progn (forget-older-fields terrain) (make-field terrain goal))))
+            (let ((field (progn (discard-oldest-fields terrain) (make-field terrain goal))))
               (setf (field-lock field) (make-lock "field"))
               (push field (terrain-fields terrain))
               field)))))

@@ -13,8 +13,8 @@
 (deftype metres () '(double-float -1d5 1d5))
 (deftype halves () "A whole number of half metres." '(signed-byte 20))
 
-(declaim (inline piece-cost))
-(defun piece-cost (cells columns i j narrow)
+(declaim (inline half-cell-cost))
+(defun half-cell-cost (cells columns i j narrow)
   "Return the cost of a metre in (I J), a square half as wide and high as a cell of CELLS. NARROW is
 true for a line that needs only free cells, and no distance from walls."
   (declare (type amounts cells) (type (integer 0 40000) columns) (type halves i j))
@@ -75,7 +75,7 @@ near a wall."
                   (when (> piece 1d-9)
                     (let ((narrow (or along
                                       (and leaving (= (ash i -1) start-i) (= (ash j -1) start-j)))))
-                      (incf sum (* piece (piece-cost cells columns i j narrow))))
+                      (incf sum (* piece (half-cell-cost cells columns i j narrow))))
                     (when (> sum limit) (return +barred+)))
                   (when (>= next 1d0) (return sum))
                   (setf part (max part next))
@@ -208,17 +208,17 @@ if the line is not free, or costs more than LIMIT. If LEAVING, the line may begi
     (measure-line line (field-cells field) (field-columns field) leaving)
     (line-cost line)))
 
-(declaim (inline first-line-p))
-(defun first-line-p (polyline)
+(declaim (inline on-first-line-p))
+(defun on-first-line-p (polyline)
   (null (polyline-points polyline)))
 
-(declaim (inline go-straight-p extend-polyline))
-(defun go-straight-p (polyline field x y limit last)
+(declaim (inline straight-line-allowed-p extend-polyline))
+(defun straight-line-allowed-p (polyline field x y limit last)
   "True if the line from the last vertex of POLYLINE to (X,Y) is free and costs no more than LIMIT.
 If LAST, it is the last line of a way and may end as near to a wall as a first line may begin."
   (declare (type polyline polyline) (type metres x y) (type double-float limit))
   (let ((from-x (polyline-x polyline)) (from-y (polyline-y polyline)))
-    (or (< (free-line-cost field from-x from-y x y limit (first-line-p polyline)) +barred+)
+    (or (< (free-line-cost field from-x from-y x y limit (on-first-line-p polyline)) +barred+)
         (and last (< (free-line-cost field x y from-x from-y limit t) +barred+)))))
 
 (defun extend-polyline (polyline field x y cost last)
@@ -226,7 +226,7 @@ If LAST, it is the last line of a way and may end as near to a wall as a first l
   (declare #.*hot* (type polyline polyline) (type metres x y) (type double-float cost))
   (let ((since (+ (polyline-since polyline) cost)))
     (unless (or (zerop (polyline-since polyline))
-                (go-straight-p polyline field x y (* since +straight-cost-ratio+) last))
+                (straight-line-allowed-p polyline field x y (* since +straight-cost-ratio+) last))
       (add-vertex polyline)
       (setf since cost))
     (setf (polyline-since polyline) since
@@ -238,7 +238,7 @@ If LAST, it is the last line of a way and may end as near to a wall as a first l
   "Extend POLYLINE to (X,Y) by a step that costs COST at most. LAST is true for the last step."
   (declare #.*hot* (type polyline polyline) (type metres x y) (type double-float cost))
   (let* ((from-x (polyline-end-x polyline)) (from-y (polyline-end-y polyline))
-         (true-cost (free-line-cost field from-x from-y x y cost (first-line-p polyline))))
+         (true-cost (free-line-cost field from-x from-y x y cost (on-first-line-p polyline))))
     (declare (type metres from-x from-y))
     (when (and (>= true-cost +barred+) (not last) (plusp (polyline-since polyline)))
       ;; By way of the cell's middle it keeps off all walls.

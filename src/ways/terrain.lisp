@@ -108,7 +108,7 @@ CLEARANCE. OFFSET is the number of such a cell minus the number of the wall's ce
                        when (< (+ (expt (gap dx) 2) (expt (gap dy) 2)) (expt clearance 2))
                          collect (list dx (+ dx (* dy columns)))))))
 
-(defun next-to-free-p (cells columns node)
+(defun next-to-free-cell-p (cells columns node)
   "True if any of the eight cells around NODE is free."
   (declare (type amounts cells))
   (loop for row in (list (- columns) 0 columns)
@@ -120,7 +120,7 @@ CLEARANCE. OFFSET is the number of such a cell minus the number of the wall's ce
   (declare (type amounts cells))
   (let ((offsets (offsets-within clearance columns)))
     (dotimes (node (length cells))
-      (when (and (= +barred+ (aref cells node)) (next-to-free-p cells columns node))
+      (when (and (= +barred+ (aref cells node)) (next-to-free-cell-p cells columns node))
         (loop for (dx offset) in offsets
               for other = (+ node offset)
               when (and (< -1 other (length cells))
@@ -158,7 +158,7 @@ CLEARANCE. OFFSET is the number of such a cell minus the number of the wall's ce
                   (equal costs (terrain-costs terrain))))
            (gethash map **terrains**)))
 
-(defun keep-terrain (terrain)
+(defun cache-terrain (terrain)
   (let* ((map (terrain-map terrain))
          (others (remove (map-places map) (gethash map **terrains**)
                          :key #'terrain-places :test-not #'eq)))
@@ -172,4 +172,4 @@ CLEARANCE. OFFSET is the number of such a cell minus the number of the wall's ce
   (or (known-terrain map clearance costs)
       (with-lock (**terrains-lock**)
         (or (known-terrain map clearance costs)
-            (keep-terrain (make-terrain map clearance costs))))))
+            (cache-terrain (make-terrain map clearance costs))))))

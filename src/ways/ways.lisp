@@ -7,7 +7,7 @@
 (defconstant +free-point-distance+ 5
   "The largest distance, in columns or rows, from a point in a wall to the free cell used instead.")
 
-(defun free-node-p (chart x y)
+(defun crossable-cell-p (chart x y)
   (and (in-map-p (chart-map chart) x y)
        (< (cost-of-node chart (cell-node (chart-terrain chart) x y)) +barred+)))
 
@@ -19,13 +19,13 @@ is none within +FREE-POINT-DISTANCE+ columns and rows."
         do (loop for row from (- (floor y) +free-point-distance+)
                    to (+ (floor y) +free-point-distance+)
                  for square = (+ (expt (- (+ column 0.5d0) x) 2) (expt (- (+ row 0.5d0) y) 2))
-                 when (and (or (null least) (< square least)) (free-node-p chart column row))
+                 when (and (or (null least) (< square least)) (crossable-cell-p chart column row))
                    do (setf least square best-x (+ column 0.5d0) best-y (+ row 0.5d0)))
         finally (return (and least (values best-x best-y)))))
 
 (defun nearest-free-coordinates (chart x y)
   "Return X and Y if their cell can be crossed, else the middle of the nearest such cell, or NIL."
-  (if (free-node-p chart (floor x) (floor y))
+  (if (crossable-cell-p chart (floor x) (floor y))
       (values x y)
       (nearest-free-middle chart x y)))
 

@@ -92,7 +92,7 @@ discrete or numeric."
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
   "Define or redefine the attribute NAME for DEFATTRIBUTE, and return NAME (reading 120)."
-  (let ((definition (title "defattribute" name))
+  (let ((definition (definition-title "defattribute" name))
         (old (declared-attribute name)))
     (check-attribute-clauses definition domain base max-mult supported-by)
     (when (eq (attribute-key name) :draw-function)
@@ -111,12 +111,12 @@ discrete or numeric."
      (make-attribute :name (attribute-key name)
                      :kind (if (consp domain) :discrete :numeric)
                      :domain (if (consp domain) domain '())
-                     :success (check-probability definition :success success)
+                     :success (checked-probability definition :success success)
                      :base (double base) :max-mult (double max-mult)
-                     :noticed (check-probability definition :noticed noticed)
+                     :noticed (checked-probability definition :noticed noticed)
                      :supporters (mapcar #'attribute-key supported-by)))
     (clrhash *likenesses*)
-    (when old (attribute-redefined (declared-attribute name)))
+    (when old (warn-of-unfit-recipes (declared-attribute name)))
     name))
 
 (defun warn-of-attribute-options (definition domain options)
@@ -134,7 +134,7 @@ discrete or numeric."
 
 (defun attribute-forms (name domain options)
   "Return the forms that DEFATTRIBUTE expands to (reading 119)."
-  (let ((definition (title "defattribute" name)))
+  (let ((definition (definition-title "defattribute" name)))
     (unless (and name (symbolp name))
       (reject-clause definition name "a symbol as the name of the attribute"))
     (check-domain definition domain)
@@ -179,7 +179,7 @@ below 0. Numbers are from -1e15 to 1e15."
   "True if VALUE, an atom or a proper list, contains no number beyond +-1e15."
   (if (consp value)
       (and (proper-list-p value) (every #'specifiable-value-p value))
-      (or (not (realp value)) (quantity-p value))))
+      (or (not (realp value)) (bounded-number-p value))))
 
 (defun range-p (value)
   "True if VALUE is a range: a list of two numbers, the lower one first."

@@ -19,7 +19,7 @@
            (when (member key seen)
              (reject-clause definition (list key value) "each option only once"))))
 
-(defun check-probability (definition option value)
+(defun checked-probability (definition option value)
   "Return VALUE of OPTION, a probability, as a double-float. Signals MALFORMED-DEFINITION."
   (unless (probability-p value)
     (reject-clause definition (list option value) (argument-type-text 'probability)))
@@ -27,7 +27,7 @@
 
 (defun number-pair-p (form)
   "True if FORM is a list of two numbers from -1e15 to 1e15, such as a point or a range."
-  (and (proper-list-p form) (= 2 (length form)) (every #'quantity-p form)))
+  (and (proper-list-p form) (= 2 (length form)) (every #'bounded-number-p form)))
 
 (defun check-name (definition name what)
   "Signal MALFORMED-DEFINITION unless NAME can be the name of a WHAT, such as \"map\"."
@@ -80,7 +80,7 @@ the whole current definition."
           (use-value other)
           (call-with-clause function other path)))))
 
-(defun parts-of-clauses (function clauses first)
+(defun append-clause-results (function clauses first)
   "Append the lists that FUNCTION returns for CLAUSES, or for the clauses that replace them. CLAUSES
 are the elements of the current definition from the position FIRST on."
   (loop for clause in clauses

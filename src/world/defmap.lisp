@@ -9,19 +9,20 @@
 ;;; (name form), with the name of a thing that is drawn. Code of clauses that were typed in a
 ;;; restart, or that come from another clause, is not in the list.
 
-(defvar *compiled-code* '() "The compiled code of the map that is being defined.")
+(defvar *compiled-map-code* '() "The compiled code of the map that is being defined.")
 
-(defun code-form (code)
+(defun compiled-code-form (code)
   `(list ,@(loop for (key form) in (remove-duplicates code :key #'first :test #'equal)
                  collect `(list ',key (lambda () ,form)))))
 
 (defun code-value (name source form)
   "Return the value of FORM, by compiled code if there is any. FORM is made from SOURCE, code for
 the thing named NAME or, if NAME is NIL, for a prototype."
-  (let ((compiled (second (find (list name source) *compiled-code* :key #'first :test #'equal))))
+  (let ((compiled (second (find (list name source) *compiled-map-code* :key #'first :test
+                                #'equal))))
     (if compiled (funcall compiled) (eval form))))
 
-(defun descriptor-value (name descriptor)
+(defun evaluated-descriptor (name descriptor)
   (loop for (key value) in descriptor
         collect (list key (if (contains-code-p key value)
                               (code-value name value (draw-function-form name value))
@@ -77,27 +78,27 @@ MALFORMED-DEFINITION for invalid contents."
 
 (defun clause-recipe (definition clause name descriptor &rest options)
   (warn-of-misspellings definition name descriptor :clause clause)
-  (handler-case (apply #'write-recipe 'defmap name descriptor options)
+  (handler-case (apply #'recipe-from-descriptor 'defmap name descriptor options)
     ((or wrong-argument unknown-name) (condition)
       (reject-clause definition clause
                      (format nil "a thing that can be made (~A)"
                              (string-right-trim "." (princ-to-string condition)))))))
 
-(defun recipe-of-thing (definition clause head descriptor contents &optional x y)
+(defun recipe-of-thing-clause (definition clause head descriptor contents &optional x y)
   "Return the recipe of the thing in CLAUSE, which has been checked and ends in CONTENTS."
   (destructuring-bind (name &key prototype kickers) (ensure-list head)
     (flet ((value () (code-value nil prototype prototype))
            (inside (content)
              (check-content definition content)
-             (list (recipe-of-thing definition content (first content) (second content)
-                                    (cddr content)))))
-      (clause-recipe definition clause name (descriptor-value name descriptor)
+             (list (recipe-of-thing-clause definition content (first content) (second content)
+                                           (cddr content)))))
+      (clause-recipe definition clause name (evaluated-descriptor name descriptor)
                      :prototype (and prototype
                                      (call-for-value #'value definition clause
                                                      "a prototype: a form whose value is a thing"))
                      :kickers kickers :x x :y y
-                     :contents (parts-of-clauses #'inside contents
-                                                 (- (length clause) (length contents)))))))
+                     :contents (append-clause-results #'inside contents
+                                                      (- (length clause) (length contents)))))))
 
 (define-map-clause obj (map &whole clause head position descriptor &rest contents)
     "(obj name (x y) descriptor contents...)"
@@ -105,7 +106,7 @@ MALFORMED-DEFINITION for invalid contents."
                 (check-thing-clause (map-title map) clause head descriptor))
   :code (code-in-thing (map-title map) head descriptor contents)
   :things (destructuring-bind (x y) position
-            (list (recipe-of-thing (map-title map) clause head descriptor contents x y))))
+            (list (recipe-of-thing-clause (map-title map) clause head descriptor contents x y))))
 
 ;;; Evaluating the form executes the clauses in order; an error in one is MALFORMED-DEFINITION, with
 ;;; restarts for that clause. Macroexpansion only searches them for code, and for mistakes to warn
@@ -138,7 +139,7 @@ cache. Worlds of MAP see the change at once. Return the map."
   (warn-of-definition "~A~@[ (~A)~]: ~?" (map-title map) (clause-location clause)
                       control arguments))
 
-(defun warn-of-walls (map clause walls)
+(defun warn-of-walls-outside-map (map clause walls)
   (when (loop for wall in walls
                 thereis (loop for (x y) in (clause-value :corners map wall)
                                 thereis (not (and (<= 0 x (map-width map))
@@ -171,10 +172,10 @@ cache. Worlds of MAP see the change at once. Return the map."
   "Give MAP the walls and things of CLAUSES; a docstring may precede the clauses."
   (flet ((parts (clause)
            (let ((parts (parts-of-clause map clause)))
-             (warn-of-walls map clause (remove-if #'recipe-p parts))
+             (warn-of-walls-outside-map map clause (remove-if #'recipe-p parts))
              parts)))
-    (let ((parts (parts-of-clauses #'parts (without-docstring clauses)
-                                   (if (stringp (first clauses)) 4 3))))
+    (let ((parts (append-clause-results #'parts (without-docstring clauses)
+                                        (if (stringp (first clauses)) 4 3))))
       (setf (map-things map) (remove-if-not #'recipe-p parts)
             (map-attribute-names map) (attribute-names (map-things map))
             (map-clauses map) (remove-if #'recipe-p parts)))))
@@ -182,15 +183,15 @@ cache. Worlds of MAP see the change at once. Return the map."
 (defun define-map (name width height &key cache (frame '(1 0 0 0)) clauses code
                                        (package *package*))
   "Define or redefine the map NAME. DEFMAP expands to a call of this function. FRAME is a value of
-MAP-FRAME, CODE the value of a form made by CODE-FORM, and PACKAGE the package that the author
+MAP-FRAME, CODE the value of a form made by COMPILED-CODE-FORM, and PACKAGE the package that the author
 writes in. Return the map."
   (unless (typep cache '(or null string pathname))
-    (reject-clause (title "defmap" name) (list :cache cache) "the name of a file"))
-  (check-map-memory (title "defmap" name) width height)
+    (reject-clause (definition-title "defmap" name) (list :cache cache) "the name of a file"))
+  (check-map-memory (definition-title "defmap" name) width height)
   (let ((map (%make-map :name name :width width :height height
                         :cache (and cache (cache-path cache))
                         :frame frame :package (package-name (find-package package))))
-        (*compiled-code* code))
+        (*compiled-map-code* code))
     (fill-map map clauses)
     (build-map map)
     (warn-of-things-in-walls map)
@@ -216,13 +217,13 @@ writes in. Return the map."
   (check-frame definition (getf (cddr size) :frame '(1 0 0 0))))
 
 (defun map-forms (name size clauses)
-  (check-size (title "defmap" name) name size)
+  (check-size (definition-title "defmap" name) name size)
   (destructuring-bind (width height &key cache (frame '(1 0 0 0))) size
     (let ((map (%make-map :name name :width width :height height)))
       `((define-map ',name ,width ,height
           :cache ,cache :frame ',frame :clauses ',clauses
-          :code ,(code-form (loop for clause in (without-docstring clauses)
-                                  append (code-in-clause map clause)))
+          :code ,(compiled-code-form (loop for clause in (without-docstring clauses)
+                                           append (code-in-clause map clause)))
           :package ,(package-name *package*))))))
 
 (public defmap)

@@ -11,11 +11,11 @@
 (define-constant +draw-arguments+ "(window thing x y width height)" :test #'string=
   :documentation "The lambda list of a :draw-function, for messages.")
 
-(defvar *from-code-p* t
+(defvar *attribute-values-from-code-p* t
   "True where values of attributes come from code; false where they are data, as in a journal.")
 
-(defun call-without-code (function &rest arguments)
-  (let ((*from-code-p* nil)) (apply function arguments)))
+(defun call-with-values-as-data (function &rest arguments)
+  (let ((*attribute-values-from-code-p* nil)) (apply function arguments)))
 
 (defun names-function-p (value)
   (and value (symbolp value) (fboundp value)
@@ -24,9 +24,9 @@
 (defun draw-function-p (value)
   (typecase value
     (null t)
-    (function (callable-with-p value 6))
-    (symbol (or (not *from-code-p*)
-                (and (names-function-p value) (callable-with-p (fdefinition value) 6))))))
+    (function (callable-with-count-p value 6))
+    (symbol (or (not *attribute-values-from-code-p*)
+                (and (names-function-p value) (callable-with-count-p (fdefinition value) 6))))))
 
 (defun draw-function-advice (value)
   "Return a text that says what to write instead of VALUE, an invalid value of :draw-function."
@@ -41,7 +41,8 @@
   ;; A name is kept rather than its function: it follows redefinitions, and can be saved.
   (let* ((name (and (functionp value) (nth-value 2 (function-lambda-expression value))))
          (value (if (and (names-function-p name) (eq value (fdefinition name))) name value)))
-    (when (and value (symbolp value) *from-code-p*) (setf (get value 'from-code-p) t))
+    (when (and value (symbolp value) *attribute-values-from-code-p*)
+      (setf (get value 'from-code-p) t))
     value))
 
 (defun resolve-draw-function (value)
@@ -78,7 +79,7 @@ without a function, the second value is a text with the reason and the remedy."
         `(,operator ,arguments (declare (ignorable ,@arguments)) ,@body)
         form)))
 
-(defun draw-function-called (name function)
+(defun define-draw-function-name (name function)
   "Define NAME as FUNCTION; return NAME, or FUNCTION if it is a closure or no draw function."
   (cond ((or (closure-p function) (not (draw-function-p function))) function)
         (t (setf (fdefinition name) function)
@@ -87,7 +88,7 @@ without a function, the second value is a text with the reason and the remedy."
 (defun draw-function-form (thing-name value)
   (let ((meant (if (and (call-named-p 'function value) (= 2 (length value))) (second value) value)))
     (cond ((call-named-p 'lambda meant)
-           `(draw-function-called ',(name-for-lambda thing-name meant)
+           `(define-draw-function-name ',(name-for-lambda thing-name meant)
                                  (function ,(with-ignorable-arguments meant))))
           ((symbolp meant) `',meant)
           (t `',value))))

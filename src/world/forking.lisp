@@ -9,8 +9,8 @@
 ;;; Destroyed things and removed attachments have no rank: they are copied like other objects, if
 ;;; something still refers to them.
 
-(declaim (inline copy-by-rank))
-(defun copy-by-rank (thing old new)
+(declaim (inline find-copy-by-rank))
+(defun find-copy-by-rank (thing old new)
   "Return the copy in the vector NEW of THING in the vector OLD; NIL if THING is not in OLD."
   (declare (type thing thing) (type simple-vector old new))
   (let ((rank (thing-rank thing)))
@@ -22,7 +22,7 @@
   (let ((world (thing-world thing)))
     (cond ((and world (not (eq world (copier-option fork :world)))) thing)
           ((destructuring-bind (&optional (old #()) &rest new) (copier-objects fork)
-             (and new (copy-by-rank thing old new))))
+             (and new (find-copy-by-rank thing old new))))
           (t (copy-slots thing fork)))))
 
 (defmethod copy-plan-value ((attachment attachment) fork)
@@ -82,16 +82,16 @@ function that copies attachments."
                   collect (funcall copied attachment twin))))
     twin))
 
-(declaim (inline unattached-thing-p))
-(defun unattached-thing-p (thing)
+(declaim (inline uncontained-empty-thing-p))
+(defun uncontained-empty-thing-p (thing)
   (declare (type thing thing))
   (and (symbolp (thing-location thing))
        (null (thing-contents thing))))
 
-(defun complete-thing (thing old new copier)
-  "Replace the location and the contents of the copy of THING by their copies. See COPY-BY-RANK."
+(defun complete-thing-copy (thing old new copier)
+  "Replace the location and the contents of the copy of THING by their copies. See FIND-COPY-BY-RANK."
   (declare (type thing thing))
-  (flet ((twin (other) (or (copy-by-rank other old new) (forked other copier))))
+  (flet ((twin (other) (or (find-copy-by-rank other old new) (forked other copier))))
     (let ((twin (twin thing)))
       (unless (symbolp (thing-location thing))
         (setf (thing-location twin) (forked (thing-location thing) copier)))
@@ -113,9 +113,9 @@ function that copies attachments."
       (let ((thing (svref old rank)))
         (when thing
           (setf (svref new rank) (copy-thing thing world copied))
-          (unless (unattached-thing-p thing) (push thing others)))))
+          (unless (uncontained-empty-thing-p thing) (push thing others)))))
     (setf (copier-objects copier) (cons old new))
-    (dolist (thing others) (complete-thing thing old new copier))))
+    (dolist (thing others) (complete-thing-copy thing old new copier))))
 
 (defun copy-things (world copy copier)
   (let* ((stock (world-stock world)) (things (stock-things stock))

@@ -127,7 +127,7 @@ NIL"))
 
 ;; Distant memory is read ahead. In a large world a move then takes 420 ns instead of 750. Kickers
 ;; that move nothing would not benefit, and would pay for it.
-(defconstant +large-group+ 5000
+(defconstant +large-group-size+ 5000
   "The number of members from which a group needs more memory than a processor caches.")
 
 (defun read-group-ahead (group end dice)
@@ -159,7 +159,7 @@ TICK is not 0. The next success is drawn before a member runs, so an error skips
 it is retried. In a large group, memory is read ahead if the first member to run moves its thing."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice)
            (type tick-count tick))
-  (let ((origin (group-origin group)) (curious (>= end +large-group+)) (ahead end)
+  (let ((origin (group-origin group)) (curious (>= end +large-group-size+)) (ahead end)
         (outlook nil))
     (declare (type (unsigned-byte 50) ahead))
     (when (origin-attachment origin) (rerun-member origin))
@@ -184,7 +184,7 @@ it is retried. In a large group, memory is read ahead if the first member to run
     (setf (origin-attachment origin) nil))
   t)
 
-(defun run-row (group end dice tick)
+(defun run-members-despite-errors (group end dice tick)
   "Run the members of GROUP before END whose trials succeed, even after a member with an error."
   (unwind-protect
        (loop while (< (group-skip group) end)
@@ -193,12 +193,12 @@ it is retried. In a large group, memory is read ahead if the first member to run
     (when (< (group-skip group) end)
       ;; A member has exited, as by THROW.
       (setf (group-origin group) (make-origin))
-      (run-row group end dice tick))))
+      (run-members-despite-errors group end dice tick))))
 
 (defun run-group (group dice tick)
   (redraw-gap-if-needed group dice)
   (let ((end (group-count group)))
-    (unwind-protect (run-row group end dice tick)
+    (unwind-protect (run-members-despite-errors group end dice tick)
       (decf (group-skip group) end)
       (when (group-dead group) (remove-dead-members group)))))
 
@@ -246,7 +246,7 @@ then those whose trials succeed. Errors in a kicker are queued as error messages
   "Run ATTACHMENT, usually SELF, once more in the next tick, whatever its probability and test. In
 that tick ATTACHMENT has no trial (manual 5.3.1). Return nothing. See reading 170."
   (check-argument run-kicker attachment (attachment-p attachment) "SELF, while a kicker runs")
-  (let ((world (world-of-living (attachment-thing attachment))))
+  (let ((world (world-of-living-thing (attachment-thing attachment))))
     (when (and world (attachment-alive-p attachment))
       (changing (world run-kicker attachment)
         (let ((next (1+ (world-kicker-tick world))))

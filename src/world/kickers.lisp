@@ -3,7 +3,7 @@
 (in-package :ars-magna.world)
 
 (export '(*kickers* kicker define-kicker attachment *kicker-generation* call-put-kicker
-          find-attachment detached-kicker warn-of-idle-kickers))
+          find-attachment removed-kicker-placeholder warn-of-idle-kickers))
 
 ;;; A KICKER is abstract; an ATTACHMENT is a kicker on a thing. A thing has at most one kicker
 ;;; of each name. Redefining a kicker changes it wherever it is attached: worlds notice by
@@ -72,7 +72,7 @@ attachment" :writable))
   kicker)
 
 (defun set-kicker-code (kicker definition prob test body)
-  (setf (kicker-prob kicker) (check-probability definition :prob prob)
+  (setf (kicker-prob kicker) (checked-probability definition :prob prob)
         (kicker-test kicker) test
         (kicker-body kicker) body)
   kicker)
@@ -80,7 +80,8 @@ attachment" :writable))
 (defun define-kicker (name &key (prob 1) test (body (constantly nil)) test-attributes)
   "Define or redefine the kicker NAME. DEFKICKER expands to a call of this function. TEST and BODY
 are functions of a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. Return the kicker."
-  (let ((new (set-kicker-code (make-kicker name) (title "defkicker" name) prob test body))
+  (let ((new (set-kicker-code (make-kicker name) (definition-title "defkicker" name) prob test
+                              body))
         (old (definition-to-replace name *kickers*)))
     (setf (kicker-test-attributes new) test-attributes)
     (when old
@@ -88,7 +89,7 @@ are functions of a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. 
       (setf (kicker-checked-p new) (kicker-checked-p old)))
     (register *kickers* name (if old (overwrite-object old new) new) :variable t)))
 
-(defun kicker-functions (definition variable options body)
+(defun kicker-option-forms (definition variable options body)
   "Return the keyword arguments of DEFINE-KICKER, as forms, for OPTIONS and BODY (reading 169)."
   (unless (and variable (symbolp variable) (not (constantp variable)))
     (reject-clause definition variable "a variable, to be bound to the kicker's thing"))
@@ -106,7 +107,7 @@ are functions of a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. 
                (thing-function (list (getf options :test))))
       :body ,(thing-function body))))
 
-(defun attributes-read-in (test)
+(defun attributes-read-by-test (test)
   "Return the keywords that TEST, a form, passes to GET-ATTRIBUTE."
   (let ((keys '()))
     (map-calls (lambda (call)
@@ -126,7 +127,7 @@ a symbol of Common Lisp, such as OPEN, or of the simulator, or already has a val
 kickers by name. A redefinition affects things that have the kicker. Random numbers depend on the
 seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-between 0 1 (world-dice
 *world* :user)). Signals MALFORMED-DEFINITION. Return the name."
-  (let ((definition (title "defkicker" name)))
+  (let ((definition (definition-title "defkicker" name)))
     (expand-definition
      form environment
      (lambda ()
@@ -134,8 +135,8 @@ seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-betwe
        (unless (and (proper-list-p lambda-list) (= 1 (length lambda-list)))
          (reject-clause definition lambda-list "a list of one variable"))
        (values `((define-kicker ',name
-                   ,@(kicker-functions definition (first lambda-list) options body)
-                   :test-attributes ',(attributes-read-in (getf options :test))))
+                   ,@(kicker-option-forms definition (first lambda-list) options body)
+                   :test-attributes ',(attributes-read-by-test (getf options :test))))
                (defvar-forms name))))))
 
 ;;; Putting kickers on things and taking them off.
@@ -144,7 +145,7 @@ seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-betwe
   "Return the attachment of the kicker named NAME on THING, or NIL."
   (find name (thing-kickers thing) :key #'attachment-name :test #'same-name-p))
 
-(defun detached-kicker (thing name)
+(defun removed-kicker-placeholder (thing name)
   "Return a placeholder for the attachment of a kicker named NAME that was removed from THING."
   (let ((attachment (make-attachment (make-kicker name) thing)))
     (setf (attachment-alive-p attachment) nil)
@@ -176,7 +177,7 @@ seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-betwe
 WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF when it runs. See reading 171."
   (check-argument set-kicker thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((kicker (find-kicker kicker-name)))
-    (changing ((world-of-living thing) set-kicker thing (kicker-name kicker))
+    (changing ((world-of-living-thing thing) set-kicker thing (kicker-name kicker))
       (attach-kicker thing kicker))))
 
 (define-operator 'set-kicker '(thing name) #'set-kicker)
@@ -184,9 +185,9 @@ WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF when it runs. 
 (defun call-put-kicker (thing name &key (prob 1) test body)
   "Attach a kicker NAME to THING only, as PUT-KICKER does. Without a BODY, remove the kicker NAME."
   (check-argument put-kicker thing (thing-p thing) (argument-type-text 'thing thing))
-  (let ((kicker (and body (set-kicker-code (make-kicker name) (title "put-kicker" name)
+  (let ((kicker (and body (set-kicker-code (make-kicker name) (definition-title "put-kicker" name)
                                            prob test body))))
-    (changing ((world-of-living thing) call-put-kicker thing name
+    (changing ((world-of-living-thing thing) call-put-kicker thing name
                         :prob prob :test test :body body)
       (if kicker
           (attach-kicker thing kicker)
@@ -200,7 +201,7 @@ WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF when it runs. 
 the thing's kicker of the same name. With an empty BODY, remove the thing's kicker NAME, even if
 DEFKICKER defined it (manual 5.3.1). TARGET is (variable thing); the variable is bound to the thing
 in test and body. Return the attached kicker, if any."
-  (let ((definition (title "put-kicker" name)))
+  (let ((definition (definition-title "put-kicker" name)))
     (check-name definition name "kicker")
     (unless (and (proper-list-p target) (= 2 (length target)))
       (reject-clause definition target "(variable thing)"))
@@ -208,7 +209,7 @@ in test and body. Return the attached kicker, if any."
       (if (every #'null body)
           `(progn (call-put-kicker ,thing ',name) nil)
           `(call-put-kicker ,thing ',name
-                            ,@(kicker-functions definition variable options body))))))
+                            ,@(kicker-option-forms definition variable options body))))))
 
 ;;; All threads that run worlds share kickers. The slots CHECKED-P and TEST-OUTCOME change in one
 ;;; direction only, by single writes, so a race can at most repeat a warning.
@@ -254,7 +255,7 @@ once in the file of WORLD's map, or the kicker is from another file."
   (let ((key (and (eq :no (kicker-test-outcome kicker))
                   (some-kicker-p (lambda (each) (eq each kicker)) world)
                   (find-if-not (lambda (name)
-                                 (or (declared-attribute name) (attribute-present-p name world)))
+                                 (or (declared-attribute name) (attribute-in-world-p name world)))
                                (kicker-test-attributes kicker)))))
     (when key
       (warn-once (list :kicker (kicker-name kicker)) world
@@ -270,7 +271,7 @@ once in the file of WORLD's map, or the kicker is from another file."
 
 ;;; Remedies for a kicker that fails again and again.
 
-(defun where-to-correct (attachment)
+(defun kicker-correction-text (attachment)
   (let* ((kicker (attachment-kicker attachment))
          (file (function-file (kicker-body kicker))))
     (cond (file (format nil "in ~A, and load the file again" file))
@@ -284,7 +285,7 @@ once in the file of WORLD's map, or the kicker is from another file."
   (let ((name (attachment-name attachment)))
     (format nil "Correct the kicker ~A ~A; or remove it: (put-kicker ~(~A~) (thing (find-thing ~
                  \"~A\")))."
-            name (where-to-correct attachment) name (attachment-thing attachment))))
+            name (kicker-correction-text attachment) name (attachment-thing attachment))))
 
 (define-facts (kicker kicker)
   "Chance in a tick" (kicker-prob kicker)

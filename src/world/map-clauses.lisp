@@ -19,7 +19,7 @@ the form for the option"))
 (define-registry map-clause "kind of map clause" :sealed t :internal t
   :finder find-clause-kind :lister all-clause-kinds)
 
-(defun map-title (map) (title "defmap" (map-name map)))
+(defun map-title (map) (definition-title "defmap" (map-name map)))
 
 (defun clause-value (option map clause &optional (kind (find-clause-kind (first clause))))
   "KIND, the kind of CLAUSE, may have a form for OPTION. Return the value of the form for CLAUSE of
@@ -108,9 +108,9 @@ and, with a warning in a compiled file, for an invalid clause."
     (reject-clause definition usage "a string that shows a clause, as \"(door (x y) width)\""))
   (check-options definition options
                  `(:check :clauses
-                   ,@(and *marking-p* '(:corners :substance :cells :things :code))))
+                   ,@(and *loading-simulator-p* '(:corners :substance :cells :things :code))))
   (let ((old (find-clause-kind name nil)))
-    (unless (or *marking-p*
+    (unless (or *loading-simulator-p*
                 (and (getf options :clauses) (or (null old) (clause-kind-derived-p old))))
       (reject-clause definition name
                      "a name that no clause of the simulator has, and :clauses with a form"))))
@@ -140,7 +140,8 @@ Existing maps do not change. Return the name. Signals MALFORMED-DEFINITION."
      ,(expand-definition
        form environment
        (lambda ()
-         (check-clause-definition (title "define-map-clause" name) name lambda-list usage options)
+         (check-clause-definition (definition-title "define-map-clause" name) name lambda-list usage
+                                  options)
          `((register *map-clauses* ',name
                      (make-clause-kind ',name ,(one-line usage) ,(and (getf options :clauses) t)
                                        ,(clause-function-form lambda-list options))))))))

@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.world)
 
-(export '(map-replaced map-form map-index point-index +wall+ +obsmove+ +obsview+ +occupied+
-          +opaque+ cell *maps* find-map-argument walk-grid cell-number grid-size +endless+
+(export '(map-replaced map-reference-form map-index point-index +wall+ +obsmove+ +obsview+
+                       +occupied+
+          +opaque+ cell *maps* find-map-argument walk-grid cell-number grid-size +infinite-distance+
           +no-limit+))
 
 ;;; A map is built once (see defmap.lisp) and shared, without locks, by all worlds made of it.
@@ -106,7 +107,7 @@ map; NEW is NIL if OLD was undefined. The layer above ends the runs of OLD.")
       (map-replaced old map)))
   map)
 
-(defun map-form (form environment)
+(defun map-reference-form (form environment)
   "Return a form that returns the map that FORM denotes in ENVIRONMENT, or its name. A symbol whose
 value is no map, such as ROOM, is the name of a map."
   (cond ((or (null form) (not (symbolp form))) form)
@@ -226,7 +227,7 @@ CELL than after it. WIDTH and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
 ;;; line meets the same cells for each. Distances along it are in lengths of its direction. All is
 ;;; inline, with VISIT a known function, so that nothing is called or allocated for a cell.
 
-(defconstant +endless+ 1d100
+(defconstant +infinite-distance+ 1d100
   "A distance that stands for infinity, even if multiplied by a rounding error.")
 (defconstant +no-limit+ 32767
   "A number of columns and rows that no walk along a line exceeds.")
@@ -244,7 +245,7 @@ CELL than after it. WIDTH and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
   "Return the distance, along a line, between neighbouring cell borders of one axis. COMPONENT is
 the component of the line's direction on this axis."
   (declare (type double-float component))
-  (if (zerop component) +endless+ (abs (/ component))))
+  (if (zerop component) +infinite-distance+ (abs (/ component))))
 
 (defun distance-to-border (start cell back)
   "Return the distance on one axis from START, in the column or row CELL, to the lower border of

@@ -177,7 +177,7 @@ messages (reading 72)."
   (unless (sane-number-p direction)
     (reject-clause definition matcher (argument-type-text 'angle)))
   (when (perhaps-degrees-p direction)
-    (warn-notably definition ": " (degrees-advice direction)))
+    (queue-notable-warning definition ": " (degrees-advice direction)))
   (double direction))
 
 (defun matcher-form (matcher definition)
@@ -198,7 +198,7 @@ messages (reading 72)."
     `(lambda ,(first graphics) (declare (ignorable ,@(first graphics))) ,@(rest graphics))))
 
 (defun place-type-forms (name lambda-list options)
-  (let ((definition (title "def-place-type" name)))
+  (let ((definition (definition-title "def-place-type" name)))
     (check-place-type-options definition name lambda-list options)
     (destructuring-bind (&key confusion check-matchers checker directions invisible graphics before
                            &allow-other-keys)
@@ -253,11 +253,11 @@ MALFORMED-DEFINITION. Return the name."
   "Define the place type NAME. DEF-PLACE-TYPE expands to a call of this function. CHECKER and
 DIRECTIONS are functions of a cell. KEY is a digest of the definition, for the key of a map's cache.
 Return NAME."
-  (let* ((definition (title "def-place-type" name))
+  (let* ((definition (definition-title "def-place-type" name))
          (old (definition-to-replace name *place-types*))
          (next (type-to-precede definition before))
          (new (%make-place-type name)))
-    (check-probability definition :confusion confusion)
+    (checked-probability definition :confusion confusion)
     (when (> (length rules) 255)
       (reject-clause definition (list :check-matchers '|...|) "at most 255 matchers"))
     (when (and (null old) (= (length (registry-objects *place-types*)) 255))

@@ -75,7 +75,7 @@
           (classify-cell map number (+ x (rule-dx rule)) (+ y (rule-dy rule))
                          (rule-direction rule)))))))
 
-(defun definition-of-type (type)
+(defun place-type-definition-context (type)
   "Return a value for *DEFINITION*: the current definition of TYPE, or else a definition made from
 the registry's entry of TYPE."
   (let ((operator "def-place-type")
@@ -86,9 +86,9 @@ the registry's entry of TYPE."
                        (list operator (place-type-name type))))))
 
 (defun reject-type-option (type option expected)
-  (let* ((*definition* (definition-of-type type))
+  (let* ((*definition* (place-type-definition-context type))
          (rest (member option (defining-form *definition*))))
-    (reject-clause (title "def-place-type" (place-type-name type))
+    (reject-clause (definition-title "def-place-type" (place-type-name type))
                    (if rest (subseq rest 0 2) option)
                    expected)))
 
@@ -248,7 +248,7 @@ and true if no type was left out (reading 70)."
                 collect (loop for entry in row
                               collect (case entry ((t) "*") ((nil) "-") (t "x"))))))
 
-(defun warn-of-walled-rule (definition rule)
+(defun warn-of-rule-needing-wall (definition rule)
   (let ((dx (rule-dx rule)) (dy (rule-dy rule)))
     (warn-of-definition "~A: the match form ~A can never fit a place, because ~A is a wall, and ~
                          only free cells are places; write - there, or let a free cell beside it ~
@@ -298,6 +298,6 @@ and true if no type was left out (reading 70)."
 
 (defun warn-of-useless-rules (definition type)
   "Warn of rules of TYPE, a registered place type, that can never make a place."
-  (mapc (lambda (rule) (warn-of-walled-rule definition rule))
+  (mapc (lambda (rule) (warn-of-rule-needing-wall definition rule))
         (remove-if-not #'rule-needs-wall-p (place-type-rules type)))
   (warn-if-covered definition type))

@@ -97,8 +97,8 @@ Check only the position, and do not call the move watchers. Return THING."
   "If (X,Y) is in a wall of WORLD, queue a warning that WHAT, a string, is inside a wall. The first
 such warning about WHAT in a run is also printed if no program reads it."
   (when (wall-at-p (world-map world) x y)
-    (queue-items :warning (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
-                 :notable-p (first-time-p (list :in-wall what) world))))
+    (queue-message-items :warning (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
+                         :notable-p (first-warning-for-key-p (list :in-wall what) world))))
 
 (defun check-inside (operator map x y)
   (unless (and (sane-number-p x) (sane-number-p y) (map-index map x y))
@@ -161,10 +161,10 @@ MISUSE for prototypes, destroyed things, and a container put into itself. Return
         (check-holder 'move-thing thing location))
     (changing ((thing-world thing) move-thing thing (or position location))
       (if position
-          (apply #'put-with-warning thing position)
+          (apply #'put-on-floor-with-warning thing position)
           (relocate thing location)))))
 
-(defun put-with-warning (thing x y)
+(defun put-on-floor-with-warning (thing x y)
   (relocate thing :floor x y)
   (warn-if-in-wall (princ-to-string thing) (thing-world thing) x y)
   thing)
@@ -277,7 +277,7 @@ to its start. Return NIL if no cell is empty."
       (declare (dynamic-extent kick))
       (%kick-thing thing kick kick-if-wall))))
 
-(defun kick-by (thing kick kick-if-wall)
+(defun apply-kick-if-allowed (thing kick kick-if-wall)
   "Move THING by KICK, as KICK-THING does. Return :OTHERWISE if the arguments are invalid or this
 thread may not change the world."
   (declare #.*hot* (type kick kick))
@@ -303,7 +303,7 @@ Return NIL if THING is inside something closed, or is destroyed (reading 172)."
   (let ((moved (if (and (typep dx 'common-number) (typep dy 'common-number))
                    (let ((kick (make-kick (double dx) (double dy))))
                      (declare (dynamic-extent kick))
-                     (kick-by thing kick kick-if-wall))
+                     (apply-kick-if-allowed thing kick kick-if-wall))
                    :otherwise)))
     (if (eq moved :otherwise)
         (kick-by-numbers thing dx dy kick-if-wall)

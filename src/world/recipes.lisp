@@ -29,7 +29,7 @@
   (make-recipe (thing-name thing) (thing-attributes thing)
                (mapcar #'thing-recipe (thing-contents thing))))
 
-(defun write-recipe (operator name descriptor &key prototype contents kickers x y)
+(defun recipe-from-descriptor (operator name descriptor &key prototype contents kickers x y)
   "Return the recipe of a thing NAME with the attributes and contents of PROTOTYPE, overridden by
 DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals WRONG-ARGUMENT."
   (unless (and name (symbolp name)) (reject-argument operator "name" name "a symbol"))
@@ -45,7 +45,7 @@ DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals WRONG-ARGU
                                 collect (if (kicker-p kicker) kicker (kicker-name found)))
                  :x (and x (double x)) :y (and y (double y)))))
 
-(defun attach-by-recipe (thing kicker)
+(defun attach-recipe-kicker (thing kicker)
   "Attach KICKER, a kicker or its name, to THING; warn if there is no such kicker any more."
   (let ((found (find-kicker kicker nil)))
     (if found
@@ -65,21 +65,21 @@ DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals WRONG-ARGU
       (incf (world-next-serial world))
       (incf (world-live-count world))
       (add-to-stock thing (world-stock world)))
-    (dolist (kicker (recipe-kickers recipe)) (attach-by-recipe thing kicker))
+    (dolist (kicker (recipe-kickers recipe)) (attach-recipe-kicker thing kicker))
     thing))
 
-(defun find-recipe (test recipes)
+(defun find-recipe-if (test recipes)
   "Return the first recipe in RECIPES, or their contents, for which TEST is true, and TEST's value."
   (dolist (recipe recipes)
     (let ((value (funcall test recipe)))
       (when value (return (values recipe value))))
-    (multiple-value-bind (inside value) (find-recipe test (recipe-contents recipe))
+    (multiple-value-bind (inside value) (find-recipe-if test (recipe-contents recipe))
       (when inside (return (values inside value))))))
 
 (defun kicker-on-map-p (kicker map)
-  (find-recipe (lambda (recipe)
-                 (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil))))
-               (map-things map)))
+  (find-recipe-if (lambda (recipe)
+                    (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil))))
+                  (map-things map)))
 
 (defun attribute-names (recipes)
   "Return the names, keywords, of all attributes of things made by RECIPES."
@@ -151,8 +151,9 @@ y), in metres; the map may also be a name or a world. PROTOTYPE is a thing whose
 contents are copied first. CONTENTS, an addition, is a list of recipes made by THING-RECIPE.
 KICKERS, an addition, is a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME,
 and MISUSE for a hand that holds something."
-  (let ((recipe (write-recipe 'new-thing name descriptor :prototype prototype
-                                                         :contents contents :kickers kickers)))
+  (let ((recipe (recipe-from-descriptor 'new-thing name descriptor :prototype prototype
+                                                                   :contents contents :kickers
+                                                                   kickers)))
     (multiple-value-bind (world place x y) (resolve-location location)
       (when (location-full-p place)
         (reject-use "new-thing: ~A holds ~{~A~^, ~} already and can hold nothing else. Let it drop ~
@@ -165,7 +166,7 @@ and MISUSE for a hand that holds something."
                        (recipe-attributes recipe)
                        :contents (recipe-contents recipe) :kickers (recipe-kickers recipe))
         (let ((thing (follow-recipe recipe world)))
-          (cond ((and world (eq place :floor)) (put-with-warning thing x y))
+          (cond ((and world (eq place :floor)) (put-on-floor-with-warning thing x y))
                 (world (relocate thing place x y))
                 (place (place-thing thing place x y)))
           thing)))))
@@ -174,7 +175,7 @@ and MISUSE for a hand that holds something."
   "Make a thing as MAKE-NEW-THING does, but only in the current world."
   (unless (eq *world* (resolve-location location))
     (reject-argument 'make-new-thing "location" location "a location in the world of this run"))
-  (apply #'call-without-code #'make-new-thing name location descriptor more))
+  (apply #'call-with-values-as-data #'make-new-thing name location descriptor more))
 
 (define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
 
@@ -210,19 +211,20 @@ and MISUSE for a hand that holds something. See readings 12 and 167."
   (unless (and name (symbolp name))
     (reject-clause "new-thing" name "a symbol as the name of the thing"))
   (unless (descriptor-p descriptor)
-    (reject-clause (title "new-thing" name) descriptor
+    (reject-clause (definition-title "new-thing" name) descriptor
                    "a list of lists (attribute value), each attribute once"))
   (unless (listp (cdr (last (ensure-list location))))
-    (reject-clause (title "new-thing" name) location
+    (reject-clause (definition-title "new-thing" name) location
                    "a location: a form, (:with form) or (map x y)"))
   (when (typep location '(cons real))
-    (reject-clause (title "new-thing" name) location
+    (reject-clause (definition-title "new-thing" name) location
                    (format nil "a map before the coordinates: (~(~A~) ~{~A~^ ~})"
                            (if *world* (map-name (world-map *world*)) "MAP") location)))
   `(make-new-thing ',name
                    ,(cond ((and (consp location) (eq :with (first location)))
                            `(list :with ,@(rest location)))
                           ((position-form-p location environment)
-                           `(list ,(map-form (first location) environment) ,@(rest location)))
+                           `(list ,(map-reference-form (first location) environment)
+                                  ,@(rest location)))
                           (t location))
                    ,(descriptor-form name descriptor) :prototype ,prototype))

@@ -68,8 +68,8 @@ WRONG-ARGUMENT."
 (defun similar-thing-name (name world)
   "Return the name of a thing in WORLD that NAME probably misspells, or NIL. A name that a thing of
 the map had at first is no misspelling."
-  (unless (find-recipe (lambda (recipe) (same-name-p name (recipe-name recipe)))
-                       (map-things (world-map world)))
+  (unless (find-recipe-if (lambda (recipe) (same-name-p name (recipe-name recipe)))
+                          (map-things (world-map world)))
     (do-things (thing world)
       (when (misspelt-thing-name-p name (thing-name thing))
         (return-from similar-thing-name (thing-name thing))))))
@@ -77,7 +77,8 @@ the map had at first is no misspelling."
 ;; Looking through all things takes time, so it is done only for the first request of each name.
 (defun warn-of-unknown-thing (name world)
   "Warn if NAME, which no thing in WORLD has, is probably a misspelling of a thing's name."
-  (let ((like (and (first-time-p (list :thing name) world) (similar-thing-name name world))))
+  (let ((like (and (first-warning-for-key-p (list :thing name) world)
+                   (similar-thing-name name world))))
     (when like
       (warn-once (list :thing-like name) world
                  (format nil "No thing here is called ~(~A~). Did you mean ~(~A~)?" name like)))))

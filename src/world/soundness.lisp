@@ -25,7 +25,7 @@ MET yet. Add the tags to MET."
 
 (defun check-thing-table (stock)
   (must-hold (and (<= 0 (stock-count stock) (length (stock-things stock)))
-                  (<= +least-stock+ (length (stock-things stock)))
+                  (<= +initial-stock-size+ (length (stock-things stock)))
                   (= (length (stock-things stock)) (length (stock-nexts stock))
                      (length (stock-marks stock)))
                   (every #'null (subseq (stock-things stock) (stock-count stock))))
@@ -65,7 +65,7 @@ MET yet. Add the tags to MET."
 
 ;;; Places. Each thing is met once: in the cell where it lies, or in what holds it.
 
-(defun count-things (things location met)
+(defun count-things-at-location (things location met)
   "Count each of THINGS in the table MET. Signal CONTRADICTION unless all THINGS are in LOCATION."
   (dolist (thing things)
     (must-hold (eq location (thing-location thing)) "~A is not where it is listed" thing)
@@ -83,7 +83,7 @@ MET yet. Add the tags to MET."
   (loop for index below (length (world-flags world))
         for flags = (aref (map-flags (world-map world)) index)
         do (do-cell (thing index world)
-             (count-things (list thing) :floor met)
+             (count-things-at-location (list thing) :floor met)
              (check-thing-on-floor thing index world)
              (setf flags (logior flags (thing-flags thing))))
            (must-hold (= flags (aref (world-flags world) index))
@@ -109,13 +109,13 @@ MET yet. Add the tags to MET."
             while (and (thing-p outer) (not (gethash outer grounded)))
             do (setf (gethash outer grounded) t)))))
 
-(defun check-places (world)
+(defun check-thing-locations (world)
   (let ((met (make-hash-table :test 'eq)))
     (check-floor world met)
     (dolist (holder (holders-in world))
       (must-hold (proper-list-of-p #'thing-p (location-contents holder))
                  "~A holds something that is no thing" (location-name holder))
-      (count-things (location-contents holder) holder met))
+      (count-things-at-location (location-contents holder) holder met))
     (do-things (thing world)
       (must-hold (eql 1 (gethash thing met)) "~A is not in exactly one place" thing)
       (must-hold (= (hash-table-count met) (world-live-count world))
@@ -179,7 +179,7 @@ circular")
   (check-thing-table (world-stock world))
   (check-cells world)
   (check-things world)
-  (check-places world)
+  (check-thing-locations world)
   (check-kickers world))
 
 (defun world-invariant-violations (world)

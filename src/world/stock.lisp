@@ -12,19 +12,19 @@
 
 (defun make-tags (size) (make-array size :element-type 'tag :initial-element 0))
 
-(defconstant +least-stock+ 16 "The number of things that a new stock has room for.")
+(defconstant +initial-stock-size+ 16 "The number of things that a new stock has room for.")
 
 (define-kind (stock :constructor (make-stock (&optional (cells 0)
                                               &aux (firsts (make-tags cells)))))
     "The things of a world, and the cells of the floor that they are in."
   (:state
-   (things (make-array +least-stock+ :initial-element nil) simple-vector
+   (things (make-array +initial-stock-size+ :initial-element nil) simple-vector
            "the things by rank, in order of creation; NIL where one has been destroyed" :part)
    (count 0 fixnum "the number of ranks in use")
    (firsts (make-tags 0) tags "by cell index, the tag of the first thing on the cell's floor")
-   (nexts (make-tags +least-stock+) tags
+   (nexts (make-tags +initial-stock-size+) tags
           "by rank, the tag of the thing that arrived next in the same cell")
-   (marks (make-octets +least-stock+) octets
+   (marks (make-octets +initial-stock-size+) octets
           "by rank, the flags that the thing causes in its cell")))
 
 ;;; Cells.

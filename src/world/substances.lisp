@@ -23,19 +23,19 @@
 ;; The first substances are defined below, where compiled functions are not yet available.
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun reject-parameter (name parameter)
-    (reject-clause (title "defsubstance" name) parameter
+    (reject-clause (definition-title "defsubstance" name) parameter
                    "a number as the parameter of the substance, such as 60, from -1e15 to 1e15"))
 
   (defun check-parameter-form (name form)
     "Signal MALFORMED-DEFINITION if FORM, for the parameter of NAME, cannot have a number as value."
     (when (and (atom form)
                (or (not (symbolp form)) (null form) (keywordp form))
-               (not (quantity-p form)))
+               (not (bounded-number-p form)))
       (reject-parameter name form))))
 
 (defun define-substance (name parameter)
   "Define or redefine the substance NAME for DEFSUBSTANCE, and return NAME."
-  (unless (quantity-p parameter) (reject-parameter name parameter))
+  (unless (bounded-number-p parameter) (reject-parameter name parameter))
   (register *substances* name (make-substance name (double parameter)))
   name)
 
@@ -50,7 +50,7 @@ Return the name."
                        (check-name "defsubstance" name "substance")
                        (check-parameter-form name parameter)
                        (unless (typep documentation '(or null string))
-                         (reject-clause (title "defsubstance" name) documentation
+                         (reject-clause (definition-title "defsubstance" name) documentation
                                         "a string as the documentation"))
                        `((define-substance ',name ,parameter)))))
 
@@ -62,10 +62,10 @@ Return the name."
 
 (defun substance-value-p (value)
   "True if VALUE can be the value of a thing's :substance (reading 64)."
-  (or (quantity-p value)
+  (or (bounded-number-p value)
       (and value (symbolp value))
       (and (proper-list-p value) (= 2 (length value))
-           (first value) (symbolp (first value)) (quantity-p (second value)))))
+           (first value) (symbolp (first value)) (bounded-number-p (second value)))))
 
 (defun substance-value-type (value)
   "Return the type, a symbol, that VALUE of a :substance attribute names; NIL if VALUE names none."

@@ -2,12 +2,12 @@
 
 (in-package :ars-magna.world)
 
-(export '(warn-of-strange-attribute warn-of-misspellings))
+(export '(warn-of-unknown-attribute warn-of-misspellings))
 
-(defun attribute-present-p (key world)
+(defun attribute-in-world-p (key world)
   (do-things (thing world)
     (when (assoc key (thing-attributes thing) :test #'eq)
-      (return-from attribute-present-p t))))
+      (return-from attribute-in-world-p t))))
 
 (defun undeclared-name-like (key world)
   "Return an undeclared attribute of a thing of WORLD that KEY probably misspells, or NIL."
@@ -16,7 +16,7 @@
           when (and (not (declared-attribute other)) (misspelling-p key other))
             do (return-from undeclared-name-like other))))
 
-(defun similar-name (key world)
+(defun similar-attribute-name (key world)
   "The undeclared KEY may be a misspelling. Return the similar name of a declared attribute, or of
 an attribute of a thing of WORLD; or NIL."
   (ensure-gethash key *likenesses* (or (declared-name-like key) (undeclared-name-like key world))))
@@ -26,11 +26,11 @@ an attribute of a thing of WORLD; or NIL."
 resembles a declared attribute or, if READ is true, an attribute of some thing."
   (let ((world (thing-world thing)))
     (when (and world (not (declared-attribute key)))
-      (let ((like (similar-name key world)))
+      (let ((like (similar-attribute-name key world)))
         (when (and like
                    (or read (declared-name-like key))
                    (not (warning-given-p key world))
-                   (not (attribute-present-p key world)))
+                   (not (attribute-in-world-p key world)))
           (warn-once key world
                      (format nil "~(~A~) of ~(~A~): ~(~S~) is not declared, and nothing here has ~
                                   it; did you mean ~(~S~)?"
@@ -115,13 +115,13 @@ the attribute cannot have. Warns as GET-ATTRIBUTE does."
                         (list (checked-entry 'set-attribute attribute new-value))
                         (checked-descriptor 'set-attribute (list (list attribute new-value))))))
     (warn-of-misspelling 'set-attribute thing (first (first descriptor)))
-    (changing ((world-of-living thing) set-attribute
+    (changing ((world-of-living-thing thing) set-attribute
                thing attribute (second (first descriptor)))
       (change-attributes thing descriptor)))
   new-value)
 
 (defun set-attribute-again (thing attribute new-value)
-  (call-without-code #'set-attribute thing attribute new-value))
+  (call-with-values-as-data #'set-attribute thing attribute new-value))
 
 (define-operator 'set-attribute '(thing name datum) #'set-attribute-again)
 
@@ -135,12 +135,12 @@ change (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   (check-argument change-attribute thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((descriptor (checked-descriptor 'change-attribute descriptor)))
     (loop for (key) in descriptor do (warn-of-misspelling 'change-attribute thing key))
-    (changing ((world-of-living thing) change-attribute thing descriptor)
+    (changing ((world-of-living-thing thing) change-attribute thing descriptor)
       (change-attributes thing descriptor)))
   thing)
 
 (define-operator 'change-attribute '(thing datum)
-  (lambda (thing descriptor) (call-without-code #'change-attribute thing descriptor)))
+  (lambda (thing descriptor) (call-with-values-as-data #'change-attribute thing descriptor)))
 
 ;;; Things may have undeclared attributes, and specifications may ask for them. Where a thing is
 ;;; defined, a warning names an attribute that resembles a declared one. Where a specification asks
@@ -192,11 +192,11 @@ thing's clause in a map, or NIL."
   (dolist (slip (find-misspellings descriptor))
     (warn-once (first slip) world (misspelling-text name slip))))
 
-(defun warn-of-strange-attribute (key world)
+(defun warn-of-unknown-attribute (key world)
   "Warn once if the attribute KEY of a specification is undeclared and no thing has it."
   (unless (or (declared-attribute key)
               (warning-given-p key world)
-              (attribute-present-p key world))
+              (attribute-in-world-p key world))
     (warn-once key world
                (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~
                             ~]~:[~;: it is an option for making things, and no attribute~]"
@@ -204,19 +204,19 @@ thing's clause in a map, or NIL."
 
 ;;; A redefined attribute may no longer accept the values that things have.
 
-(defun unfit-recipe (recipes key)
+(defun find-unfit-recipe (recipes key)
   "Search RECIPES and their contents. Return the first recipe with an invalid value of the attribute
 KEY, and a text that says what is wrong."
-  (find-recipe (lambda (recipe)
-                 (let ((value (second (assoc key (recipe-attributes recipe) :test #'eq))))
-                   (handler-case (progn (check-attribute-value 'defattribute key value) nil)
-                     (wrong-argument (condition) (princ-to-string condition)))))
-               recipes))
+  (find-recipe-if (lambda (recipe)
+                    (let ((value (second (assoc key (recipe-attributes recipe) :test #'eq))))
+                      (handler-case (progn (check-attribute-value 'defattribute key value) nil)
+                        (wrong-argument (condition) (princ-to-string condition)))))
+                  recipes))
 
-(defun attribute-redefined (new)
+(defun warn-of-unfit-recipes (new)
   (dolist (map (all-maps))
     (multiple-value-bind (recipe trouble)
-        (unfit-recipe (map-things map) (attribute-name new))
+        (find-unfit-recipe (map-things map) (attribute-name new))
       (when (and recipe (not (defined-in-this-file-p (map-name map) *maps*)))
         (warn-of-definition "In map ~(~A~), ~(~A~) has a value that the new definition does not ~
                              allow: ~A"

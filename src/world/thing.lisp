@@ -3,7 +3,7 @@
 (in-package :ars-magna.world)
 
 (export '(location-contents location-position location-world location-closed-p location-full-p
-          location-name location-phrase thing thing-holders-text value-like
+          location-name location-phrase thing thing-holders-text similar-domain-value
           warn-of-unknown-substance))
 
 ;;; The location of a thing is :FLOOR (then it has a position), or its holder, a thing or, in the
@@ -119,7 +119,7 @@ name" :addition)
 
 ;;; Attributes.
 
-(defun value-like (value domain)
+(defun similar-domain-value (value domain)
   "Return the symbol in DOMAIN that VALUE probably misspells, or NIL."
   (and (symbolp value)
        (nearest-name value (remove-if-not #'symbolp (remove nil domain)))))
@@ -142,8 +142,8 @@ name" :addition)
              (unless (member value (attribute-domain attribute) :test #'value-equal)
                (reject (format nil "one of ~(~{~A~^, ~}~)~@[; did you mean ~(~A~)?~]"
                                (attribute-domain attribute)
-                               (value-like value (attribute-domain attribute))))))
-            ((not (quantity-p value)) (reject (argument-type-text 'quantity)))
+                               (similar-domain-value value (attribute-domain attribute))))))
+            ((not (bounded-number-p value)) (reject (argument-type-text 'quantity)))
             ((and (member key '(:size :weight :capacity)) (minusp value))
              (reject (argument-type-text 'amount)))))))
 

@@ -78,7 +78,8 @@ at OPPOSITE, and at the last corner (readings 55, 56)."
 
 (defun valid-material-p (type parameters counts)
   "True if TYPE can be a substance, and PARAMETERS are numbers, whose count is in the list COUNTS."
-  (and type (symbolp type) (member (length parameters) counts) (every #'quantity-p parameters)))
+  (and type (symbolp type) (member (length parameters) counts)
+       (every #'bounded-number-p parameters)))
 
 (define-map-clause wall (map start end type &rest parameters)
     "(wall (x0 y0) (x1 y1) substance parameter [parameter1]), with numbers from -1e15 to 1e15"

@@ -3,8 +3,8 @@
 (in-package :ars-magna.world)
 
 (export '(world do-cell world-rank-count thing-of-rank do-things change-world changing
-          permitting-changes first-time-p warning-given-p record-progress-checked
-          progress-checked-p warn-once warn-of-angle))
+          permitting-changes first-warning-for-key-p warning-given-p record-progress-checked
+          progress-checked-p warn-once warn-of-angle-in-degrees))
 
 ;;; A world is made fresh from its map's recipe. Nothing in it depends on anything but the map
 ;;; and the seed. Serial numbers count from 1 in order of creation, so that things in order of
@@ -35,7 +35,7 @@ in" :part)
    (kicker-tick 0 tick-count "the number of ticks in which kickers have run")
    (due-kickers '() list "the kickers to run in the next tick by request" :part))
   (:scratch
-   (noted-names '() list "the keys of the warnings given so far; see FIRST-TIME-P")
+   (noted-names '() list "the keys of the warnings given so far; see FIRST-WARNING-FOR-KEY-P")
    (writer nil t "the thread that is changing the world, or NIL" :export))
   ;; While it is NIL, each tick checks.
   (:link
@@ -155,7 +155,7 @@ the change as OPERATOR, a symbol, with the list ARGUMENTS.")
   (or (null world)
       (eq (world-writer (the world world)) (current-thread))))
 
-(defun call-changing-world (function world)
+(defun call-permitting-changes (function world)
   "Call FUNCTION, which may change WORLD. Only the thread that owns WORLD may call this function."
   (let ((before (world-writer world)))
     (setf (world-writer world) (current-thread))
@@ -164,9 +164,9 @@ the change as OPERATOR, a symbol, with the list ARGUMENTS.")
 
 (defmacro permitting-changes ((world) &body body)
   "Run BODY, which may change WORLD. Only the thread that owns WORLD may use this macro."
-  (form-calling 'call-changing-world body world))
+  (form-calling 'call-permitting-changes body world))
 
-(defun world-of-living (thing)
+(defun world-of-living-thing (thing)
   "Return the world that a change of THING affects: NIL if THING is a prototype or destroyed."
   (and (thing-alive-p thing) (thing-world thing)))
 
@@ -195,7 +195,7 @@ the journal records. Inside ticks, nothing is consed."
   (with-lock (*noted-names-lock*)
     (and (member key (world-noted-names world) :test #'equal) t)))
 
-(defun first-time-p (key world)
+(defun first-warning-for-key-p (key world)
   "True if no warning about KEY has been given in the run of WORLD. Record that one is given now."
   (with-lock (*noted-names-lock*)
     (unless (member key (world-noted-names world) :test #'equal)
@@ -204,7 +204,7 @@ the journal records. Inside ticks, nothing is consed."
 
 (defun record-progress-checked (world)
   "Record that the program itself has checked which commands are in progress in the run of WORLD."
-  (first-time-p '(:looked-after) world))
+  (first-warning-for-key-p '(:looked-after) world))
 
 (defun progress-checked-p (world)
   "True if the program itself has checked which commands are in progress in the run of WORLD."
@@ -215,11 +215,11 @@ the journal records. Inside ticks, nothing is consed."
 about KEY. KEY is, for example, a list of a topic and a name. If no program reads the warning, it is
 shown like an error, provided that NOTABLE is true or is a function that returns true at that time.
 Return true if the warning was queued."
-  (when (first-time-p key world)
-    (queue-items :warning (ensure-list items) :notable-p notable)
+  (when (first-warning-for-key-p key world)
+    (queue-message-items :warning (ensure-list items) :notable-p notable)
     t))
 
-(defun warn-of-angle (operator world angle)
+(defun warn-of-angle-in-degrees (operator world angle)
   "Warn once for OPERATOR, a symbol or string, in WORLD if ANGLE, in radians, may be in degrees."
   (when (perhaps-degrees-p angle)
     (warn-once (list :angle operator) world

@@ -153,7 +153,7 @@ pairs together, and separately for all tests over several pairs."
 ;;; experiment itself has changed, success may mean something else in each table. PAIRS are lists of
 ;;; a sample of the newer table and one of the older.
 
-(defun changes-of-pair (pair after before)
+(defun changed-parts-of-pair (pair after before)
   "Return the names of the fingerprint parts that differ between the conditions of PAIR, read from
 experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is missing."
   (let ((now (recorded-parts (sample-condition (first pair)) after))
@@ -169,7 +169,7 @@ experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is
                   collect (format nil "~A: ~A" title (no-break-text (cut line 88))))
             (and (nthcdr 5 only) (list (format nil "~A: ..." title))))))
 
-(defun experiment-changes (after before)
+(defun experiment-change-lines (after before)
   (let ((now (recorded-form after)) (then (recorded-form before)))
     (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it ~
                        does, measures or counts as success may differ, so differences below need ~
@@ -195,7 +195,7 @@ experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is
                          trials, such as shared data, a clock or a file. Do not rely on either ~
                          table." count)))))
 
-(defun changes-between (pairs after before)
+(defun code-change-lines (pairs after before)
   "Return sentences on the code and data of the conditions in PAIRS that differ between two tables,
 as listed by experiment.txt in the directories AFTER and BEFORE. Either directory may be NIL."
   (let* ((changed (remove-if (lambda (pair)
@@ -203,7 +203,7 @@ as listed by experiment.txt in the directories AFTER and BEFORE. Either director
                              pairs))
          (changes (loop for pair in changed
                         collect (if (and after before)
-                                    (changes-of-pair pair after before)
+                                    (changed-parts-of-pair pair after before)
                                     :unknown)))
          (parts (remove-duplicates (apply #'append (remove :unknown changes))
                                    :test #'string= :from-end t)))
@@ -214,7 +214,7 @@ as listed by experiment.txt in the directories AFTER and BEFORE. Either director
            (list (format nil "What differs between the tables is not known: the fingerprints ~
                               differ, but there is no experiment.txt with their parts.")))
           (t (append (and (some (lambda (part) (part-of-kind-p "experiment" part)) parts)
-                          (experiment-changes after before))
+                          (experiment-change-lines after before))
                      (list (changed-parts-text parts (length changed))))))))
 
 ;;;; Comparing versions
@@ -279,7 +279,7 @@ the names of conditions that only FIRST or only SECOND has."
           :versions contrasts
           :overall (and (overall-contrast-needed-p contrasts)
                         (list (overall-contrast first second pairs names after before)))
-          :changes (changes-between pairs (results-directory after) (results-directory before))
+          :changes (code-change-lines pairs (results-directory after) (results-directory before))
           :notes (and lacking
                       (list (format nil "Only one of the tables has the condition~P ~{~A~^, ~}."
                                     (length lacking) lacking))))

@@ -33,7 +33,8 @@
          (number (* unit (round (rational value) unit))))
     (cond ((and (zerop number) (< 9 decimals)) "0")
           ;; A small number beside very large ones is not written as 0.
-          ((and (zerop number) (minusp decimals) (not (zerop value))) (figure-text value :digits 2))
+          ((and (zerop number) (minusp decimals) (not (zerop value)))
+           (rounded-number-text value :digits 2))
           ((or (zerop number) (<= -6 (decimal-exponent number) 14))
            (decimal-text number (max 0 decimals)))
           (t (scientific-text number decimals)))))
@@ -162,7 +163,7 @@
                    (format nil "~A of ~A and ~A differ only by rounding, by at most ~A for any ~
                                 seed: ~A ~A"
                            (paired-measure difference) first second
-                           (figure-text (paired-rounding difference) :digits 2)
+                           (rounded-number-text (paired-rounding difference) :digits 2)
                            (both-values-text difference) (common-seeds-text difference)))
                   ((and (eql 0 (paired-rounding difference))
                         (= 0 (paired-low difference) (paired-high difference)))
@@ -177,7 +178,7 @@
                              (difference-figures-text difference)
                              (no-difference-text difference)))))))
 
-(defun success-verdict (contrast)
+(defun success-change (contrast)
   "Return :BETTER or :WORSE if the first side of CONTRAST succeeds significantly more or less often,
 :SAME if both sides are the same runs, else NIL."
   (let ((difference (find-difference "success" contrast)))
@@ -196,7 +197,7 @@
 
 (defun versions-verdict (comparison)
   (let* ((contrasts (comparison-contrasts comparison))
-         (found (mapcar #'success-verdict contrasts))
+         (found (mapcar #'success-change contrasts))
          (trials (reduce #'+ contrasts :key #'contrast-trials))
          (same (reduce #'+ contrasts :key #'contrast-same)))
     (if (= same trials)
@@ -260,7 +261,7 @@ one difference alone."
 (defparameter *comparison-headings*
   '("measure" "seeds" "first" "second" "difference" "p" "p alone"))
 
-(defun table-row (difference)
+(defun difference-row (difference)
   (let ((write (number-formatter difference)) (rate-p (eq :rate (paired-kind difference))))
     (flet ((text (value) (if value (funcall write value) "-")))
       (list (paired-measure difference) (integer-text (paired-trials difference))
@@ -278,9 +279,9 @@ one difference alone."
             (contrast-where contrast) (contrast-first contrast) (contrast-second contrast)
             (same-runs-p contrast) table)))
 
-(defun write-table (comparison stream)
+(defun write-comparison-table (comparison stream)
   (let* ((groups (loop for contrast in (all-contrasts comparison)
-                       collect (mapcar #'table-row (contrast-differences contrast))))
+                       collect (mapcar #'difference-row (contrast-differences contrast))))
          (columns (apply #'mapcar (lambda (heading &rest texts)
                                     (make-text-column heading texts
                                                       :whole-p t
@@ -328,7 +329,7 @@ one difference alone."
   (format stream "~@[~%~{~A~%~}~]" (comparison-remarks comparison))
   (when (tested-differences (all-contrasts comparison))
     (terpri stream)
-    (write-table comparison stream)
+    (write-comparison-table comparison stream)
     (terpri stream)
     (write-wrapped (methods-text comparison) stream))
   comparison)

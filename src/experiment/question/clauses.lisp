@@ -16,7 +16,7 @@
 (defun design-seed (part)
   (if (eq :seed (third part)) (fourth part) 0))
 
-(defun part-names (part)
+(defun vary-part-names (part)
   (if (design-part-p part)
       (mapcar #'first (design-ranges part))
       (list (first part))))
@@ -27,7 +27,7 @@
 
 (defun check-bounds (definition range low high)
   (let* ((scale (fourth range))
-         (expected (cond ((not (and (quantity-p low) (quantity-p high) (< low high)))
+         (expected (cond ((not (and (bounded-number-p low) (bounded-number-p high) (< low high)))
                           "two numbers, from -1e15 to 1e15, the lower number first")
                          ((and (eq :integer scale) (notevery #'integerp (list low high)))
                           "two integers")
@@ -125,7 +125,7 @@ CLAUSE if there are no elements."
   (dolist (element (rest clause))
     (unless (funcall test element) (reject-clause definition element expected))))
 
-(defun check-names (definition clause names)
+(defun check-names-differ (definition clause names)
   (loop for (name . others) on names
         when (member name others)
           do (reject-clause definition clause
@@ -205,7 +205,7 @@ CLAUSE if there are no elements."
                (every (lambda (part) (typep part '(cons t (cons t null)))) (rest case)))
     (reject-clause definition case "a condition (name (what form)...)"))
   (check-visible-name definition case (first case))
-  (check-names definition case (mapcar #'first (rest case)))
+  (check-names-differ definition case (mapcar #'first (rest case)))
   (mapc (lambda (part) (check-factor-name definition part)) (rest case)))
 
 (defun check-same-factors (definition cases)
@@ -220,7 +220,7 @@ CLAUSE if there are no elements."
   (remove-duplicates
    (append (loop for case in (clause-arguments :conditions clauses)
                  append (mapcar #'first (rest case)))
-           (loop for part in (clause-arguments :vary clauses) append (part-names part)))
+           (loop for part in (clause-arguments :vary clauses) append (vary-part-names part)))
    :from-end t))
 
 (defun varied-variables (clauses)
@@ -254,7 +254,7 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
     (reject-by-usage definition clause)))
 
 (defun seconds-p (value)
-  (and (quantity-p value) (<= 1/1000 value +largest+)))
+  (and (bounded-number-p value) (<= 1/1000 value +largest+)))
 
 (defun check-clause (definition clause)
   (ecase (first clause)
@@ -264,16 +264,17 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
                      (lambda (part)
                        (and (typep part 'named-form) (parameter-of-variable (first part))))
                      "(parameter form), with a parameter of the simulation such as max-speed*")
-     (check-names definition clause (mapcar #'first (rest clause))))
+     (check-names-differ definition clause (mapcar #'first (rest clause))))
     (:clean (unless (member (rest clause) '(() (t) (nil)) :test #'equal)
               (reject-by-usage definition clause)))
     (:vary (check-elements definition clause #'consp)
      (dolist (part (rest clause))
        (if (design-part-p part) (check-design definition part) (check-factor definition part)))
-     (check-names definition clause (loop for part in (rest clause) append (part-names part))))
+     (check-names-differ definition clause
+                         (loop for part in (rest clause) append (vary-part-names part))))
     (:conditions (check-elements definition clause #'consp)
      (dolist (case (rest clause)) (check-case definition case))
-     (check-names definition clause (mapcar #'first (rest clause)))
+     (check-names-differ definition clause (mapcar #'first (rest clause)))
      (check-same-factors definition (rest clause)))
     ((:trials :limit)
      (check-number-clause definition clause
@@ -299,7 +300,8 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
     (reject-clause definition (find :thinking clauses :key #'first)
                    "no clause (:thinking mode) if :thinking varies"))
   (dolist (part (clause-arguments :vary clauses))
-    (when (find-if (lambda (case) (intersection (part-names part) (mapcar #'first (rest case))))
+    (when (find-if (lambda (case)
+                     (intersection (vary-part-names part) (mapcar #'first (rest case))))
                    (clause-arguments :conditions clauses))
       (reject-clause definition part "something that the :conditions do not vary already")))
   (check-column-names definition clauses)

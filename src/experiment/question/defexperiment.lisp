@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(experiment-from))
+(export '(experiment-from-options))
 
 ;;; Expanding.
 
@@ -17,7 +17,7 @@
         ((eq :in (second part)) (third part))
         (t `(list ,@(loop for form in (rest part) collect (value-form (first part) form))))))
 
-(defun parts-form (parts value-of)
+(defun named-values-form (parts value-of)
   `(list ,@(loop for part in parts collect `(list ',part ,(funcall value-of part)))))
 
 (defun function-form (clauses forms)
@@ -54,13 +54,14 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
   `(define-experiment ',name
      :documentation ,documentation
      :robots ',(clause-arguments :robots clauses)
-     :parameters ,(parts-form (clause-arguments :parameters clauses) #'second)
+     :parameters ,(named-values-form (clause-arguments :parameters clauses) #'second)
      :clean ,(clean-clause-p clauses)
      :thinking ,(thinking-form clauses)
-     :factors ,(parts-form (clause-arguments :vary clauses) #'values-form)
+     :factors ,(named-values-form (clause-arguments :vary clauses) #'values-form)
      :cases (list ,@(loop for (name . parts) in (clause-arguments :conditions clauses)
-                          collect `(list ',name ,(parts-form parts (lambda (part)
-                                                                     (apply #'value-form part))))))
+                          collect `(list ',name ,(named-values-form parts (lambda (part)
+                                                                            (apply #'value-form
+                                                                                   part))))))
      ,@(loop for key in '(:trials :seed :limit :time-limit)
              for value = (first (clause-arguments key clauses))
              when value append (list key value))
@@ -112,7 +113,7 @@ task of BEGIN-PLAN, the outcome of the plan counts (unfinished if the task has n
 a true first value is success, and the second value, a symbol or string, is the reason. If a plan
 started by BEGIN-PLAN waits for something that can never happen, the trial fails: deadlock. The
 documentation of RUN-EXPERIMENT says what is kept."
-  (let ((definition (title "defexperiment" name)))
+  (let ((definition (definition-title "defexperiment" name)))
     (multiple-value-bind (clauses documentation)
         (if (stringp (first clauses))
             (values (rest clauses) (first clauses))
@@ -188,7 +189,7 @@ documentation of RUN-EXPERIMENT says what is kept."
   (dolist (value values) (check-value definition part value))
   (check-values-differ definition part (mapcar #'value-text values)))
 
-(defun axis-from (definition part values)
+(defun axis-from-values (definition part values)
   "Return the axis for PART of :vary. VALUES are the value of its VALUES-FORM."
   (cond ((design-part-p part)
          (let ((choices (design-choices definition part values)))
@@ -196,12 +197,12 @@ documentation of RUN-EXPERIMENT says what is kept."
              (loop for (nil value) in choice
                    for range in (design-ranges part)
                    do (check-value definition range value)))
-           (list (part-names part) choices)))
+           (list (vary-part-names part) choices)))
         (t (check-values definition part values)
-           (list (part-names part)
+           (list (vary-part-names part)
                  (loop for value in values collect (list (list (first part) value)))))))
 
-(defun settings-from (definition settings)
+(defun checked-settings (definition settings)
   "Return lists (name value) for SETTINGS, lists (part value). Signals MALFORMED-DEFINITION."
   (loop for (part value) in settings
         do (check-value definition part value)
@@ -219,20 +220,21 @@ documentation of RUN-EXPERIMENT says what is kept."
                                  (condition-texts condition))))
         (setf (gethash name known) condition)))))
 
-(defun experiment-from (name definition
-                        &rest options
-                        &key robots parameters clean (thinking :free) factors cases
-                        &allow-other-keys)
+(defun experiment-from-options (name definition
+                                &rest options
+                                &key robots parameters clean (thinking :free) factors cases
+                                &allow-other-keys)
   "Return an experiment named NAME. Errors name DEFINITION. OPTIONS may also be the initial values
 of other slots of an experiment."
   (check-robots definition (list* :robots robots) robots)
   (check-value definition (list :thinking thinking) thinking)
-  (let* ((axes (loop for (part values) in factors collect (axis-from definition part values)))
+  (let* ((axes (loop for (part values) in factors collect
+                     (axis-from-values definition part values)))
          (cases-from (loop for (case settings) in cases
-                           collect (list case (settings-from definition settings))))
+                           collect (list case (checked-settings definition settings))))
          (experiment (apply #'%make-experiment :name name :axes axes :cases cases-from
                                                :allow-other-keys t options))
-         (settings (settings-from definition parameters)))
+         (settings (checked-settings definition parameters)))
     (setf (experiment-conditions experiment)
           (call-with-trial-syntax (lambda () (all-conditions experiment clean settings))))
     (check-conditions-differ definition
@@ -243,7 +245,7 @@ of other slots of an experiment."
     experiment))
 
 (defun define-experiment (name &rest options)
-  "Define and return the experiment NAME. OPTIONS are those of EXPERIMENT-FROM. A DEFEXPERIMENT form
+  "Define and return the experiment NAME. OPTIONS are those of EXPERIMENT-FROM-OPTIONS. A DEFEXPERIMENT form
 expands to a call of DEFINE-EXPERIMENT."
   (register *experiments* name
-            (apply #'experiment-from name (title "defexperiment" name) options)))
+            (apply #'experiment-from-options name (definition-title "defexperiment" name) options)))

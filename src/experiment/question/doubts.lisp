@@ -77,7 +77,7 @@
     (format nil "a plan that fails has its failure as the value, which is true. Let the call of ~
                  RUN-PLAN be the last form of :run: its second value says how it ended.")))
 
-(defun first-value-p (form)
+(defun returns-first-value-p (form)
   "True if FORM returns the first value of :run, or of RUN-PLAN."
   (flet ((call-p (form name) (and (typep form '(cons symbol)) (same-name-p name (first form)))))
     (or (call-p form 'run-plan)
@@ -89,7 +89,8 @@
   (block advice
     (map-comparisons (lambda (subject word comparison)
                        (declare (ignore comparison))
-                       (when (and (first-value-p subject) (member word '(:succeeded :failed)))
+                       (when (and (returns-first-value-p subject)
+                                  (member word '(:succeeded :failed)))
                          (return-from advice
                            (format nil "RUN-PLAN returns ~(~S~) as its second value. Write ~
                                         (eq (second (trial-values)) ~:*~(~S~))." word))))

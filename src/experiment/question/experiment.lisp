@@ -132,7 +132,7 @@ PARAMETERS are lists (name value) for all conditions."
                      collect (condition-from-settings experiment (append settings others) case
                                                       others clean parameters))))
 
-(defun find-by-name (text things name)
+(defun filter-by-name (text things name)
   "Return the THINGS named TEXT, or else those with TEXT in their names. NAME is a name's reader."
   (or (remove text things :key name :test-not #'string-equal)
       (remove-if-not (lambda (thing) (search text (funcall name thing) :test #'char-equal))
@@ -145,7 +145,7 @@ is a condition, its number, from 1, its name, or an unambiguous part of its name
 UNKNOWN-NAME."
   (let* ((conditions (experiment-conditions (find-experiment experiment)))
          (text (if (typep designator '(or symbol string)) (string designator) ""))
-         (named (and (string/= text "") (find-by-name text conditions #'condition-name))))
+         (named (and (string/= text "") (filter-by-name text conditions #'condition-name))))
     (cond ((member designator conditions) designator)
           ((and (integerp designator) (<= 1 designator (length conditions)))
            (nth (1- designator) conditions))

@@ -84,10 +84,10 @@ that it is the same in each run."
     (boolean (if value "true" "false"))
     (number (exact-number-text value))
     (cons (format nil "[~{~A~^, ~}]" (mapcar #'json-text value)))
-    (string (quoted-text value))
-    (t (quoted-text (unquoted-text value)))))
+    (string (json-string-text value))
+    (t (json-string-text (unquoted-text value)))))
 
-(defun quoted-text (text)
+(defun json-string-text (text)
   (with-output-to-string (out) (write-json-string (plain-text text) out)))
 
 (defun plain-value-text (value)

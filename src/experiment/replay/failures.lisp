@@ -57,7 +57,7 @@ experiment that was run in this Lisp, or the experiment's name. Signals MISUSE a
 name; all samples if CONDITION is NIL. Signals UNKNOWN-NAME."
   (let ((samples (results-samples results)))
     (cond ((null condition) samples)
-          ((find-by-name (string condition) samples #'sample-condition))
+          ((filter-by-name (string condition) samples #'sample-condition))
           (t (reject-name "condition" (string condition)
                           (mapcar #'sample-condition samples))))))
 
@@ -79,7 +79,7 @@ MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
 (defun prompt-argument (text)
   (if (find #\Space text) (format nil "\"~A\"" text) text))
 
-(defun example-text (group sample)
+(defun example-prompt-line (group sample)
   (format nil "trial ~A ~A ~D" (prompt-argument (sample-experiment sample))
           (prompt-argument (sample-condition sample)) (first (first group))))
 
@@ -95,7 +95,7 @@ MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
     (dolist (group groups)
       (format stream "  ~5D  ~5,1F %  ~A~%                  ~A~%" (failure-count group)
               (* 100d0 (/ (failure-count group) (length (sample-trials sample))))
-              (failure-description group) (example-text group sample)))))
+              (failure-description group) (example-prompt-line group sample)))))
 
 (addition print-failures)
 (defun print-failures (results &optional condition (stream *standard-output*))

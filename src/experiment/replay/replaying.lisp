@@ -10,7 +10,7 @@
 ;;; their top-level values, as in a worker, whatever this thread has bound. Functions that inspect
 ;;; the trial are called aside: with the reader, printer, dice and debugger from outside the trial.
 
-(defparameter *surroundings*
+(defparameter *inspection-variables*
   (list *random-state-variable*
         '*package* '*readtable* '*read-default-float-format* '*read-base* '*print-base*
         '*print-radix* '*print-case* '*print-pretty* '*print-readably* '*print-escape*
@@ -18,28 +18,29 @@
   "Variables with one value for a trial and another for functions that inspect it.")
 
 (defstruct (outside (:constructor make-outside (values hook)) (:copier nil))
-  "The values of *SURROUNDINGS* and the debugger's hook outside of a trial."
+  "The values of *INSPECTION-VARIABLES* and the debugger's hook outside of a trial."
   (values '() :type list)
   (hook nil :read-only t))
 
-(defvar *outside* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
+(defvar *inspection-context* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
 
 (defun call-outside-trial (function)
-  "Call FUNCTION, which inspects a trial that runs again. The *SURROUNDINGS* have their values from
+  "Call FUNCTION, which inspects a trial that runs again. The *INSPECTION-VARIABLES* have their values from
 outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION do not count."
-  (let ((outside *outside*))
-    (progv *surroundings* (outside-values outside)
+  (let ((outside *inspection-context*))
+    (progv *inspection-variables* (outside-values outside)
       (let ((*inspecting-p* t))
         (with-debugger-hook ((outside-hook outside))
           (unwind-protect (call-allowing-exits function)
-            (drop-unsignalled *message-queue*)
-            (setf (outside-values outside) (mapcar #'symbol-value *surroundings*))))))))
+            (drop-unsignalled-errors *message-queue*)
+            (setf (outside-values outside) (mapcar #'symbol-value *inspection-variables*))))))))
 
-(defun call-from-outside (function)
+(defun call-with-inspection-context (function)
   "Call FUNCTION, which runs a trial and may use CALL-OUTSIDE-TRIAL."
-  (let ((*outside* (make-outside (mapcar #'symbol-value *surroundings*) (debugger-hook))))
+  (let ((*inspection-context* (make-outside (mapcar #'symbol-value *inspection-variables*)
+                                            (debugger-hook))))
     (unwind-protect (funcall function)
-      (mapc #'set *surroundings* (outside-values *outside*)))))
+      (mapc #'set *inspection-variables* (outside-values *inspection-context*)))))
 
 (defun call-as-in-worker (function)
   "Call FUNCTION with the global values of *SIMULATION-VARIABLES*, as in a new thread. Entering a
@@ -50,7 +51,7 @@ debugger without a user is an error of the trial."
                              (unless somebody-p (throw 'broken-off condition))))
         (funcall function)))))
 
-(defun run-to-end (experiment result then)
+(defun complete-and-inspect-trial (experiment result then)
   (keep-history)
   (complete-trial experiment result)
   (setf (simulation-gate (current-simulation))
@@ -67,16 +68,16 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
     (flet ((run ()
              (call-in-trial (lambda ()
                               (setf begun-p t)
-                              (run-to-end experiment result then))
+                              (complete-and-inspect-trial experiment result then))
                             experiment condition trial :gate gate :journal journal)))
-      (call-from-outside
+      (call-with-inspection-context
        (lambda ()
          (call-as-in-worker
           (lambda ()
             (block nil
               (handler-bind ((error (lambda (condition)
                                       (unless begun-p
-                                        (note-error result (text-of-condition condition))
+                                        (set-error-outcome result (text-of-condition condition))
                                         (return)))))
                 (prepare-trials experiment condition)
                 (run))))))))
@@ -92,7 +93,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
         for left = (- due (seconds-now))
         do (answer-questions (timeline-custody (simulation-timeline simulation)))
         while (plusp left)
-        do (wait-and-serve never (min left 0.02))))
+        do (serve-and-wait-once never (min left 0.02))))
 
 (defun paced-gate (rate)
   "Return a gate, a function called before each tick, that lets RATE ticks a second pass."
@@ -131,7 +132,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
 (defun row-of-trial (experiment condition trial directory)
   "Return the texts of the row in DIRECTORY for TRIAL of CONDITION of EXPERIMENT. Signals MISUSE if
 there is no such row."
-  (let ((file (rows-file (existing-table directory)))
+  (let ((file (rows-file (existing-table-directory directory)))
         (place (1+ (seed-column (columns experiment))))
         (number (value-text trial)))
     (check-file-header file (columns experiment))
@@ -151,8 +152,8 @@ there is no such row."
           collect (if (string= "fingerprint" column)
                       (format nil "its code or configuration is different~@[; changed since: ~
                                    ~{~A~^, ~}~]"
-                              (changes-since (result-condition result) parts
-                                             (directory-path directory)))
+                              (changed-parts-since-run (result-condition result) parts
+                                                       (directory-path directory)))
                       (format nil "~A is ~:[~A~;~*empty~], and ~:[~A~;~*empty~] in the row"
                               column (string= "" now) now (string= "" then) then))))
 
@@ -174,7 +175,7 @@ file, also save the journal there."
           (1+ (position condition (experiment-conditions experiment)))
           trial))
 
-(defun run-replaying (experiment condition trial until rate step journal then)
+(defun run-for-replay (experiment condition trial until rate step journal then)
   "Run TRIAL of CONDITION of EXPERIMENT; the other arguments are those of REPLAY-TRIAL. Return the
 result, whether the trial was stopped, and its journal if JOURNAL is true."
   (let ((*replayed-trial-line* (trial-prompt-line experiment condition trial))
@@ -209,7 +210,7 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
         for (tick . texts) in (result-series result)
         collect (cons tick (loop for text in texts collect (value-from-text text shared)))))
 
-(defun replaying-plist (experiment result stopped-p journal differences)
+(defun replay-plist (experiment result stopped-p journal differences)
   (list :outcome (and (not stopped-p) (result-outcome result))
         :reason (if stopped-p "" (result-reason result))
         :ticks (result-ticks result)
@@ -220,7 +221,7 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
         :journal journal
         :differences differences))
 
-(defun check-replay (trial until then step journal directory)
+(defun check-replay-arguments (trial until then step journal directory)
   (check-argument replay-trial trial (and (integerp trial) (<= 0 trial +largest+))
                   "the number of a trial, counted from 1")
   (check-argument replay-trial until (or (null until) (whole-p until 0))
@@ -255,7 +256,7 @@ Return a plist: :outcome (\"success\", \"failure\", \"limit\", \"error\"; NIL if
 :reason, :ticks, :digest (as in the row), :measures (lists (name value)), :series (what :each-tick
 recorded, lists (tick value...)), :error, :journal, and :differences from the row, in words. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."
-  (check-replay trial until then step journal directory)
+  (check-replay-arguments trial until then step journal directory)
   (when rate (check-rate rate))
   (let* ((experiment (find-experiment experiment))
          (condition (find-condition experiment condition))
@@ -263,8 +264,8 @@ UNKNOWN-NAME, WRONG-ARGUMENT, MISUSE (no such row), DAMAGED-TABLE."
          (parts (and directory (prepare-condition experiment condition)))
          (row (and directory (row-of-trial experiment condition trial directory))))
     (multiple-value-bind (result stopped-p kept)
-        (run-replaying experiment condition trial until rate step journal then)
-      (replaying-plist experiment result stopped-p kept
-                       (and row
-                            (not stopped-p)
-                            (row-differences experiment result parts row directory))))))
+        (run-for-replay experiment condition trial until rate step journal then)
+      (replay-plist experiment result stopped-p kept
+                    (and row
+                         (not stopped-p)
+                         (row-differences experiment result parts row directory))))))

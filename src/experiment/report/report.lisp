@@ -153,11 +153,11 @@ are too large or too small for four digits."
 (defun number-formatter-for (numbers)
   (let ((decimals (decimals-for numbers)))
     (lambda (number)
-      (if decimals (decimal-text number decimals) (figure-text number)))))
+      (if decimals (decimal-text number decimals) (rounded-number-text number)))))
 
 ;;; Columns of estimates.
 
-(defun estimate-writer (estimates)
+(defun estimate-formatter (estimates)
   (if (eq :rate (estimate-kind (first estimates)))
       (let ((trials (reduce #'max estimates :key #'estimate-count)))
         (lambda (share) (percent-text share trials)))
@@ -172,7 +172,7 @@ are too large or too small for four digits."
     (loop for text in texts collect (format nil "~V@A" width text))))
 
 (defun interval-texts (estimates)
-  (let ((writer (estimate-writer estimates)))
+  (let ((writer (estimate-formatter estimates)))
     (flet ((texts (reader) (aligned-texts (mapcar reader estimates) writer)))
       (loop for estimate in estimates
             for value in (texts #'estimate-value)
@@ -180,7 +180,7 @@ are too large or too small for four digits."
             for high in (texts #'estimate-high)
             collect (format nil "~A~:[~; (~A to ~A)~]" value (estimate-low estimate) low high)))))
 
-(defun with-counts (texts estimates)
+(defun texts-with-counts (texts estimates)
   (let ((width (reduce #'max texts :key #'length)))
     (loop for text in texts
           for estimate in estimates
@@ -198,7 +198,7 @@ are too large or too small for four digits."
                              (if (or (eq :median (estimate-kind (first estimates)))
                                      (equal trials (mapcar #'estimate-count estimates)))
                                  texts
-                                 (with-counts texts estimates))
+                                 (texts-with-counts texts estimates))
                              :whole-p t))))))
 
 (defun estimates-columns (estimates trials &optional (name (estimate-name (first estimates))))
@@ -261,7 +261,7 @@ page, else the condition's name."
                    stream)
     (when question (write-wrapped question stream))))
 
-(defun former-summaries (results summaries)
+(defun dropped-condition-summaries (results summaries)
   "Return those SUMMARIES of RESULTS whose conditions the experiment no longer has; NIL if the
 experiment has none of the conditions of SUMMARIES."
   (let ((former (remove-if (lambda (summary)
@@ -276,7 +276,7 @@ experiment has none of the conditions of SUMMARIES."
                     (value-columns summaries) stream))
 
 (defun write-tables (results summaries stream)
-  (let* ((former (former-summaries results summaries))
+  (let* ((former (dropped-condition-summaries results summaries))
          (present (remove-if (lambda (summary) (member summary former)) summaries)))
     (write-heading results present former stream)
     (write-summaries results present stream)

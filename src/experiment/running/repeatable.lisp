@@ -31,7 +31,7 @@ OTHERS, and its text in TEXTS."
       (call-by-workers #'run 1 :stop (lambda () (setf stopped-p t))))
     result))
 
-(defun check-repeatable (experiment texts)
+(defun check-trial-repeatable (experiment texts)
   "Signal MISUSE if the trial of EXPERIMENT with TEXTS (see TEXTS-WITH-CHECKSUM) gives another row."
   (let* ((condition (condition-of-texts experiment texts))
          (columns (append (columns experiment) '("series, by its check sum,")))
@@ -56,10 +56,10 @@ OTHERS, and its text in TEXTS."
 row. Check at least one trial, and more trials until SECONDS have passed."
   (loop with begun = (real-microseconds)
         for texts in rows
-        do (check-repeatable experiment texts)
+        do (check-trial-repeatable experiment texts)
         until (> (seconds-since begun) seconds)))
 
-(defun part-name (part)
+(defun fingerprint-part-name (part)
   (format nil "~(~A~) ~A" (first part) (second part)))
 
 (defun name-without-package (name)
@@ -91,7 +91,7 @@ variable or a function; else NIL."
         for added = (loop for part being the hash-keys of (condition-weak-parts condition)
                           unless (gethash part weak) collect part)
         unless (and (equal before now) (null added))
-          do (call-noting-refusal
+          do (call-recording-refused-rows
               (lambda ()
                 (reject-changed (set-exclusive-or before (append added now) :test #'equal)
                                 condition directory))
@@ -100,12 +100,12 @@ variable or a function; else NIL."
 (defun reject-changed (changed condition directory)
   (reject-use "Code or data changed while the experiment ran: ~{~A~^, ~}. The rows~@[ in ~
                ~A~] may be from before or after the change. ~@[~A ~]~@(~A~)."
-              (remove-duplicates (mapcar #'part-name changed) :test #'string=)
+              (remove-duplicates (mapcar #'fingerprint-part-name changed) :test #'string=)
               (and *directory-given-p* (native-name directory))
               (sharing-advice changed condition)
               (start-again-advice)))
 
-(defun call-noting-refusal (function directory)
+(defun call-recording-refused-rows (function directory)
   "Call FUNCTION. If FUNCTION signals MISUSE, record in DIRECTORY that the rows there were refused."
   (handler-bind ((misuse (lambda (condition)
                            (record-refusal directory (princ-to-string condition)))))
@@ -116,7 +116,7 @@ variable or a function; else NIL."
 another row now. The run took SECONDS. The check lasts a twentieth of SECONDS, or one trial."
   (let ((experiment (store-experiment store)))
     (check-code-unchanged experiment parts (store-path store))
-    (call-noting-refusal
+    (call-recording-refused-rows
      (lambda ()
        (check-rows-repeatable experiment
                               (loop for condition in (experiment-conditions experiment)

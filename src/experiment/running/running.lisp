@@ -134,7 +134,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
       (and (consp shard) (integerp (car shard)) (integerp (cdr shard))
            (< -1 (car shard) (cdr shard) (1+ +largest+)))))
 
-(defun check-run (trials workers directory until shard time-limit)
+(defun check-run-arguments (trials workers directory until shard time-limit)
   (check-argument run-experiment trials (and (integerp trials) (<= 1 trials +largest+))
                   "how many trials of each condition, from 1 to 1e9")
   (check-argument run-experiment workers (and (integerp workers) (<= 1 workers 1000))
@@ -167,7 +167,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
                    (mapcar #'condition-name (experiment-conditions experiment)))
              (when stream (report-errors results stream))
              results)))
-    (call-with-directory (lambda () (call-with-trial-syntax #'run)) directory)))
+    (call-with-locked-directory (lambda () (call-with-trial-syntax #'run)) directory)))
 
 (addition run-experiment)
 (define-with-keywords run-experiment (name &key trials (workers (processors)) directory until shard
@@ -199,7 +199,7 @@ A trial with an error has a row, too. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISU
   (let* ((experiment (find-experiment name))
          (trials (or trials (if until *most-trials* (experiment-trials experiment))))
          (time-limit (if time-limit-p time-limit (experiment-time-limit experiment))))
-    (check-run trials workers directory until shard time-limit)
+    (check-run-arguments trials workers directory until shard time-limit)
     (flet ((run (path)
              (let ((*directory-given-p* (and directory t)))
                (run-and-read experiment path trials until shard workers time-limit stream))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(call-by-workers trial-under-way run-trial-in-worker))
+(export '(call-by-workers current-slow-trial-text run-trial-in-worker))
 
 (addition processors)
 
@@ -17,12 +17,12 @@ results are left, and the new result or NIL."
   (multiple-value-bind (trouble there-p) (lparallel:try-receive-result channel :timeout 0.2)
     (values (if there-p (1- left) left) trouble)))
 
-(defconstant +patience+ 10
+(defconstant +waits-for-workers+ 10
   "The time to wait for threads before they are ended, in fifths of a second.")
 
 (defun end-workers (channel left)
   "Wait a moment for the LEFT threads whose results CHANNEL still lacks, then end these threads."
-  (loop repeat +patience+
+  (loop repeat +waits-for-workers+
         while (plusp left)
         do (setf left (await-result channel left)))
   (handler-bind ((warning #'muffle-warning))
@@ -111,7 +111,7 @@ threads return; threads that do not return are ended. Errors of FUNCTION are sig
         (/ (max 0 (- (* workers (seconds-since (progress-begun progress))) spent))
            (progress-done progress)))))
 
-(defun longest-under-way (progress)
+(defun slow-trial-text (progress)
   "Return a text on the trial of PROGRESS that has run longest, if it has run for a long time, and
 much longer than other trials took; else NIL."
   (let ((oldest (first (trials-under-way progress))))
@@ -124,10 +124,10 @@ much longer than other trials took; else NIL."
 
 (defvar *progress* nil "The progress of the experiment that runs in this thread, or NIL.")
 
-(defun trial-under-way ()
+(defun current-slow-trial-text ()
   "Return a text on the trial that has run longest in this thread's experiment, if the trial has run
 for a long time; else NIL."
-  (and *progress* (longest-under-way *progress*)))
+  (and *progress* (slow-trial-text *progress*)))
 
 (defun report-progress (progress &optional last)
   "Print PROGRESS if the previous report is long enough ago, or if LAST is true."
@@ -139,9 +139,9 @@ for a long time; else NIL."
       (setf (progress-told progress) (real-microseconds))
       (if (progress-terminal-p progress)
           (format stream "~C~A~@[; ~A~]~C[K~:[~;~%~]" #\Return (progress-text progress)
-                  (longest-under-way progress) #\Escape last)
+                  (slow-trial-text progress) #\Escape last)
           (format stream "~&~A~@[; ~A~]~%" (progress-text progress)
-                  (longest-under-way progress)))
+                  (slow-trial-text progress)))
       (finish-output stream))))
 
 ;;;; Trials that do not return, or end their thread
@@ -182,7 +182,7 @@ Return the trial's result, even if the trial ends the thread, unless STOPPING-P 
                          (lambda () (setf result (run-trial experiment condition trial)))
                          seconds)))
          stopping-p)
-        (note-error result "The trial has ended the thread that it ran in.")
+        (set-error-outcome result "The trial has ended the thread that it ran in.")
         ;; Its progress differs from run to run, so it is not in the row.
         (when late-p
           (setf result (make-result condition trial seed)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(experiment-file form-in-package))
+(export '(experiment-file form-text-in-package))
 
 ;;; Origins. They do not affect trials, so they are not in fingerprints.
 
@@ -64,7 +64,7 @@ fails, as outside of a work tree."
 ;;; The text is for people. Only some of it is read back: the parts of the fingerprints and the
 ;;; experiment's form, to report changes, the order of conditions, and the option --until.
 
-(defun form-in-package (form package)
+(defun form-text-in-package (form package)
   "Return the text of FORM, in lower case, as written in PACKAGE."
   (printing-plainly ()
     (let ((*package* package) (*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 90))
@@ -90,7 +90,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
                   ARS MAGNA ~A.~%~{~A~%~}~%~A~2%"
           (experiment-seed experiment) (experiment-limit experiment) *simulator-version*
           (origin-lines experiment)
-          (form-in-package (experiment-form experiment) (experiment-package experiment)))
+          (form-text-in-package (experiment-form experiment) (experiment-package experiment)))
   (format stream "What decides the trials of each condition:~%")
   (loop for condition in (experiment-conditions experiment)
         for its in parts
@@ -201,7 +201,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
   (loop for line in (description-lines directory)
         when (starts-with-subseq "= " line) collect (subseq line 2)))
 
-(defun changes-since (condition parts directory)
+(defun changed-parts-since-run (condition parts directory)
   "Return a list of names of the PARTS of CONDITION that differ from experiment.txt in DIRECTORY."
   (let ((before (recorded-parts (condition-name condition) directory)))
     (and before (changed-parts before (mapcar #'part-text parts)))))
@@ -213,4 +213,4 @@ those of the fingerprints of all conditions."
     (reject-use "~A has rows of the condition ~A from other code or another configuration~@[; ~
                  changed since: ~{~A~^, ~}~]. Give another directory, or delete these rows."
                 (native-name directory) (condition-name condition)
-                (changes-since condition its directory))))
+                (changed-parts-since-run condition its directory))))

@@ -29,7 +29,7 @@
 (defvar *stores-in-use* '() "The directories that this process writes to.")
 (defvar *stores-lock* (make-lock "directories of experiments"))
 
-(defun call-with-directory (function path)
+(defun call-with-locked-directory (function path)
   "Call FUNCTION with the directory PATH locked. Signals MISUSE if another run writes to it."
   (flet ((reject ()
            (reject-use "Another run writes to ~A. Wait for its end, or give another directory."
@@ -57,7 +57,7 @@
                     for path = (directory-path (format nil "~Atrials-~D-~D/"
                                                        (native-name (uiop:temporary-directory))
                                                        (process-id) number))
-                    when (make-new-directory path) return path)))
+                    when (make-missing-directory path) return path)))
     (unwind-protect (funcall function path)
       (uiop:delete-directory-tree path :validate t :if-does-not-exist :ignore))))
 

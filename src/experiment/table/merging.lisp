@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(shard-directory directories-with-rows count-rows trials-in-shard-p missing-shards
+(export '(shard-directory directories-with-rows count-rows shard-has-trials-p missing-shards
           check-same-code))
 
 (defun copy-description (directories target)
@@ -41,12 +41,12 @@ TO is unchanged. If no directory has series of a condition, TO has no series of 
                        (every (lambda (name) (typep name '(or string pathname))) directories))
                   "a list of directories")
   (check-argument merge-results to (typep to '(or string pathname)) "the name of a directory")
-  (let* ((sources (mapcar #'existing-table directories))
+  (let* ((sources (mapcar #'existing-table-directory directories))
          (target (ensure-store-directory to))
          (there (and (existing-path (rows-file target)) (list target)))
          (sources (remove-duplicates (append there sources) :test #'equal :from-end t)))
     (mapc #'check-not-refused sources)
-    (call-with-directory
+    (call-with-locked-directory
      (lambda ()
        (call-with-trial-syntax
         (lambda ()
@@ -96,7 +96,7 @@ TO is unchanged. If no directory has series of a condition, TO has no series of 
 
 ;;; Existing and missing rows.
 
-(defun trials-in-shard-p (shard trials)
+(defun shard-has-trials-p (shard trials)
   "True if SHARD, a cons (index . count), has any of the trials from 1 to TRIALS."
   (<= 1 (if (zerop (car shard)) (cdr shard) (car shard)) trials))
 

@@ -97,7 +97,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   "Return the low 60 bits of the digest in TEXT, a cell of a table, or NIL if TEXT is empty."
   (and (string/= text "") (ldb (byte 60 0) (parse-integer text :radix 16))))
 
-(defun note-row (sample texts measures shared)
+(defun add-row-to-sample (sample texts measures shared)
   (destructuring-bind (seed trial outcome reason ticks &rest rest) texts
     (vector-push-extend (parse-integer seed) (sample-seeds sample))
     (vector-push-extend (parse-integer trial) (sample-trials sample))
@@ -140,7 +140,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
               samples))
       (unless (< (last-trial (first samples)) (parse-integer (nth (1+ seed) texts)))
         (return-from results-if-sorted nil))
-      (note-row (first samples) (nthcdr seed texts) measures shared))
+      (add-row-to-sample (first samples) (nthcdr seed texts) measures shared))
     (setf (results-samples results) (reverse samples))
     results))
 
@@ -157,7 +157,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
                    (format nil "it is the table of an experiment; (read-results DIRECTORY) reads ~
                                 the directory that it is in"))
 
-(defun existing-table (directory)
+(defun existing-table-directory (directory)
   "Return the path of DIRECTORY. Signals MISUSE unless DIRECTORY has a table."
   (let ((path (directory-path directory)))
     (check-files-plain path)
@@ -178,7 +178,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 DIRECTORY has no results, and DAMAGED-TABLE."
   (check-argument read-results directory (typep directory '(or string pathname))
                   "the name of a directory")
-  (let ((path (existing-table directory)))
+  (let ((path (existing-table-directory directory)))
     (let ((results (call-with-trial-syntax (lambda () (results-from-table (rows-file path))))))
       (setf (results-directory results) path
             (results-until results) (recorded-until path)

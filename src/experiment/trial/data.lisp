@@ -11,7 +11,7 @@
 (defconstant +largest-data+ 1000000 "The most conses, arrays, tables and structures in data.")
 (defconstant +most-elements+ 20000000 "The most elements of arrays in data.")
 
-(defun plain-structure-p (value)
+(defun user-structure-p (value)
   "True if VALUE is an instance of a user's DEFSTRUCT or DEFINE-CONDITION, and not a fluent, thing
 or other object of the simulator."
   (and (typep value '(or structure-object condition))
@@ -27,7 +27,7 @@ or other object of the simulator."
 
 ;; The contents of a weak table depend on garbage collection. See WEAK-DIGESTS.
 (deftype compound ()
-  '(or cons array (and hash-table (not (satisfies weak-table-p))) (satisfies plain-structure-p)))
+  '(or cons array (and hash-table (not (satisfies weak-table-p))) (satisfies user-structure-p)))
 
 ;;; Walking.
 
@@ -123,7 +123,7 @@ that has no parts itself. PATH maps the compounds around the current part to the
 
 ;;; Digests.
 
-(defun call-walking (value atom)
+(defun map-data-atoms (value atom)
   "Call ATOM with each part of VALUE that has no parts. Return VALUE's digest; NIL if too large."
   (let ((walk (make-walk (make-digest) atom)))
     (catch 'too-large
@@ -132,7 +132,7 @@ that has no parts itself. PATH maps the compounds around the current part to the
 
 (defun data-digest (value)
   "Return a digest of VALUE, including the packages of symbols; NIL if VALUE is too large."
-  (call-walking value #'identity))
+  (map-data-atoms value #'identity))
 
 ;;; Weakly held objects can disappear at any time, so they are not data. But a trial can find what
 ;;; another trial added, unless its key was made in that trial.
@@ -141,7 +141,7 @@ that has no parts itself. PATH maps the compounds around the current part to the
   (or (weak-pointer-p object)
       (and (hash-table-p object) (weak-table-p object))))
 
-(defun lasting-key-p (key table)
+(defun reproducible-key-p (key table)
   "True if another trial can make an object that is the same key of the hash TABLE as KEY."
   (typecase key
     (symbol (symbol-package key))
@@ -149,18 +149,18 @@ that has no parts itself. PATH maps the compounds around the current part to the
     (t (table-value-p key))))
 
 (defun weak-digests (object atom)
-  "Return digests of what OBJECT, a weak pointer or table, holds now. ATOM is as for CALL-WALKING."
+  "Return digests of what OBJECT, a weak pointer or table, holds now. ATOM is as for MAP-DATA-ATOMS."
   (if (weak-pointer-p object)
       (let ((target (weak-value object)))
-        (and target (list (call-walking target atom))))
+        (and target (list (map-data-atoms target atom))))
       (let ((walk (make-walk (make-digest) atom)))
         (catch 'too-large
           (call-with-trial-syntax (lambda ()
                                     (entry-digests object 0 walk
-                                                   (lambda (key) (lasting-key-p key object))))
+                                                   (lambda (key) (reproducible-key-p key object))))
                                   (find-package :keyword))))))
 
-(defun no-data-p (value)
+(defun empty-or-not-data-p (value)
   "True if VALUE is not data, or is NIL or an empty hash table. A variable that will hold data often
 has NIL or an empty table first."
   (or (null value)

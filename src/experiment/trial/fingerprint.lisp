@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(settle-fingerprints prepare-condition))
+(export '(freeze-file-digests prepare-condition))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defparameter *deciding-folders*
@@ -62,7 +62,7 @@ FILE when it was loaded, or NIL."
 ;;; Functions typed at the prompt have no file, and no source is left. So each has its own number:
 ;;; typed again, or in another Lisp, it is a different function.
 
-(defvar *typed-functions* (make-hash-table :test 'eq :weakness :key :synchronized t)
+(defvar *prompt-function-numbers* (make-hash-table :test 'eq :weakness :key :synchronized t)
   "Numbers of functions that were typed at the prompt.")
 
 ;;; Visiting.
@@ -83,23 +83,23 @@ FILE when it was loaded, or NIL."
     (if file
         (note-file file written reach)
         (note-part :typed (safe-text name)
-                   (or (gethash function *typed-functions*)
-                       (setf (gethash function *typed-functions*) (unique-number)))
+                   (or (gethash function *prompt-function-numbers*)
+                       (setf (gethash function *prompt-function-numbers*) (unique-number)))
                    reach))))
 
 (defun note-function (function name reach)
   "Note FUNCTION, the definition of NAME, in REACH if its file does not determine it. The file does
 not determine closures, nor functions that something else has set, such as a trial."
   (let ((own-name (nth-value 2 (function-lambda-expression function)))
-        (values (closed-over function)))
+        (values (closed-over-values function)))
     (unless (or (typep function 'generic-function)
                 (and (eq name own-name) (null values)))
       (note-part :function (qualified-symbol-name name) (data-digest values) reach))))
 
-(defun note-weak (object symbol reach)
+(defun note-weak-references (object symbol reach)
   "Note in REACH what OBJECT, a part of the value of the variable SYMBOL, holds weakly."
   (when (and (weak-object-p object) (first-visit-p object reach))
-    (dolist (number (weak-digests object (lambda (atom) (note-weak atom symbol reach))))
+    (dolist (number (weak-digests object (lambda (atom) (note-weak-references atom symbol reach))))
       (setf (gethash (list :variable (qualified-symbol-name symbol) number)
                      (reach-weak-parts reach)) t))))
 
@@ -111,10 +111,10 @@ and an empty table are not noted, because variables for data often have such val
     (flet ((visit-atom (atom)
              (if (typep atom '(or symbol function))
                  (visit atom reach)
-                 (note-weak atom symbol reach))))
+                 (note-weak-references atom symbol reach))))
       (cond ((functionp value) (visit-function value symbol reach))
-            ((no-data-p value) (note-weak value symbol reach))
-            (t (let ((number (call-walking value #'visit-atom)))
+            ((empty-or-not-data-p value) (note-weak-references value symbol reach))
+            (t (let ((number (map-data-atoms value #'visit-atom)))
                  (when number
                    (note-part :variable (qualified-symbol-name symbol) number reach))))))))
 
@@ -199,7 +199,7 @@ and an empty table are not noted, because variables for data often have such val
 (defparameter *file-digests* (make-hash-table :test 'equal :synchronized t)
   "A table from names of files to digests. A saved Lisp needs the table if its files are gone.")
 
-(defvar *digests-settled-p* nil
+(defvar *file-digests-frozen-p* nil
   "True in a Lisp that was saved with its experiments: later changes of their files do not count.")
 
 (defun short-file-name (file)
@@ -209,7 +209,7 @@ and an empty table are not noted, because variables for data often have such val
   "Return a digest of the code in FILE. Signals MISUSE if the file's write date has changed since it
 was loaded. WRITTEN is the date at loading, or NIL."
   (let ((now (ignore-errors (file-write-date (native-path file)))))
-    (cond ((and *digests-settled-p* (gethash file *file-digests*)))
+    (cond ((and *file-digests-frozen-p* (gethash file *file-digests*)))
           ((and now (or (null written) (= now written)))
            (setf (gethash file *file-digests*) (file-digest (native-path file) "defexperiment")))
           ((gethash file *file-digests*))
@@ -240,12 +240,12 @@ was loaded. WRITTEN is the date at loading, or NIL."
                                  (condition-arguments condition))))))
 
 (defun definitions-in-trial (experiment condition)
-  "Return the definitions in use when a trial of CONDITION begins; see DEFINITIONS-OF."
-  (call-in-trial (lambda () (definitions-of (current-simulation))) experiment condition 1))
+  "Return the definitions in use when a trial of CONDITION begins; see DEFINITIONS-DEPENDED-ON."
+  (call-in-trial (lambda () (definitions-depended-on (current-simulation))) experiment condition 1))
 
 (defun find-reach (experiment condition definitions)
   (let ((reach (make-reach)))
-    (dolist (entry (remove nil (mapcar #'definition-entry definitions)))
+    (dolist (entry (remove nil (mapcar #'definition-registry-entry definitions)))
       (visit-definition entry reach))
     (dolist (function (list* (experiment-run experiment) (experiment-until experiment)
                              (experiment-success experiment)
@@ -264,7 +264,8 @@ was loaded. WRITTEN is the date at loading, or NIL."
      (sort (remove-duplicates (append (configuration-parts experiment condition)
                                       (reach-parts reach)
                                       ;; Manipulations and undefined names have no entry.
-                                      (remove :file (remove-if #'definition-entry definitions)
+                                      (remove :file
+                                              (remove-if #'definition-registry-entry definitions)
                                               :key #'first)
                                       (file-parts (reach-files reach)))
                               :test #'equal)
@@ -311,8 +312,8 @@ MISUSE if a file has changed since it was loaded, and errors from making the wor
   (loop for condition in (experiment-conditions experiment)
         collect (prepare-condition experiment condition)))
 
-(defun settle-fingerprints ()
+(defun freeze-file-digests ()
   "Keep the present digests of experiments' files in a Lisp that will be saved, even if the files
 change later. Signals MISUSE if a file has changed since it was loaded."
   (mapc #'prepare-experiment (all-experiments))
-  (setf *digests-settled-p* t))
+  (setf *file-digests-frozen-p* t))

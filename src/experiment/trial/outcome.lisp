@@ -64,7 +64,7 @@
       (plain-text (failure-text (lisp-failure-condition (first values))))
       ""))
 
-(defun add-error (result text)
+(defun set-first-error (result text)
   "Set the error of RESULT to TEXT, unless RESULT has an error already."
   (when (string= "" (result-error result))
     (setf (result-error result) (plain-text text))))
@@ -226,4 +226,4 @@ SAMPLER keeps the first error."
   (when *sampler*
     (sample-once *sampler* (current-simulation))
     (setf (result-series result) (reverse (sampler-samples *sampler*)))
-    (when (sampler-trouble *sampler*) (add-error result (sampler-trouble *sampler*)))))
+    (when (sampler-trouble *sampler*) (set-first-error result (sampler-trouble *sampler*)))))

@@ -76,7 +76,7 @@ if there is an :until; (NIL :LIMIT) if the limit of ticks was reached."
     (return-from run-forms
       (let ((values (multiple-value-list (call-trial-form (experiment-run experiment) condition))))
         (setf *trial-values* values)
-        (signal-trouble *message-queue*)
+        (signal-pending-error *message-queue*)
         (check-ticks-passed values)
         (when (experiment-until experiment)
           (loop until (checked-form-value :until (experiment-until experiment) condition)
@@ -93,11 +93,11 @@ the failure, return the values that RUN-PLAN would have returned, and set the er
                      (lambda (error)
                        (let ((cause (user-code-error-cause error)))
                          (when (typep cause '(and plan-failure (not lisp-failure)))
-                           (add-error result (text-of-condition error))
+                           (set-first-error result (text-of-condition error))
                            (return-from run (list cause :failed)))))))
       (run-forms experiment condition))))
 
-(defun decide-trial (experiment condition outcome reason)
+(defun final-trial-outcome (experiment condition outcome reason)
   "Return the final outcome and reason of a trial of CONDITION; OUTCOME and REASON are those that
 :run gives. If only :run reports success, the trial fails with the reason only-believed."
   (let ((success (experiment-success experiment)))
@@ -111,7 +111,7 @@ the failure, return the values that RUN-PLAN would have returned, and set the er
   (setf (result-ticks result) (simulation-tick)
         (result-digest result) (state-digest)))
 
-(defun note-error (result text)
+(defun set-error-outcome (result text)
   (setf (result-outcome result) "error"
         (result-reason result) ""
         (result-measures result) '()
@@ -148,18 +148,18 @@ success. Otherwise add an error if no tick followed commands. VALUES are the val
   (let ((text (or (and (not (success-p (result-outcome result)))
                        (or (stranded-plan-text) (unfinished-text values)))
                   (no-ticks-text))))
-    (when text (add-error result text))))
+    (when text (set-first-error result text))))
 
 (defun note-unnoticed-failures (result values failed)
   "If RESULT is a success, add an error for the first of the FAILED tasks that :run did not return
 as its first value. A failure counts as true, so :run may have taken the failure for success."
   (let ((task (find (first values) failed :key #'task-result :test-not #'eq)))
     (when (and task (success-p (result-outcome result)))
-      (add-error result
-                 (format nil "The plan ~A failed (~A), and :run went on. The second value of ~
+      (set-first-error result
+                       (format nil "The plan ~A failed (~A), and :run went on. The second value of ~
                               RUN-PLAN says how a plan ended; the first is the failure, which is ~
                               true."
-                         (task-label task) (failure-text (task-result task)))))))
+                               (task-label task) (failure-text (task-result task)))))))
 
 (defun evaluate-trial (experiment result)
   (let* ((condition (result-condition result))
@@ -169,8 +169,8 @@ as its first value. A failure counts as true, so :run may have taken the failure
                    (run-noting-failures experiment condition result))))
     (multiple-value-bind (outcome reason) (outcome-of-run experiment values)
       (setf (values (result-outcome result) (result-reason result))
-            (decide-trial experiment condition outcome reason))
-      (add-error result (error-in-plan values))
+            (final-trial-outcome experiment condition outcome reason))
+      (set-first-error result (error-in-plan values))
       (note-unnoticed-failures result values (reverse failed))
       (note-unfinished result values)
       (note-series result)
@@ -185,12 +185,13 @@ as its first value. A failure counts as true, so :run may have taken the failure
                              (lambda ()
                                (setf text (text-of-measure "measure" name function condition))))
               when trouble
-                do (add-error result (format nil "Error in the measure ~(~A~): ~A" name trouble))
+                do (set-first-error result
+                                    (format nil "Error in the measure ~(~A~): ~A" name trouble))
               collect text)))
 
 (defun call-noting-errors (function result)
   (let ((trouble (error-text-of-call function)))
-    (when trouble (note-error result trouble))))
+    (when trouble (set-error-outcome result trouble))))
 
 (defun complete-trial (experiment result)
   (call-sampling (lambda ()
