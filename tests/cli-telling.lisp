@@ -48,7 +48,7 @@
              (is (mentions-p told "(thing (find-thing \"POT#1\"))). PAUSE stops time.")))
            (is (= 6 (shown "step 5"
                            (format nil "(defkicker ars-magna.tests::fail-often (it) () ~
-                                          (error \"no ~~A\" (thing-name it)))")
+                                        (error \"no ~~A\" (thing-name it)))")
                            "step 5")))
            (is (= 2 (shown "step 2" "(put-kicker fail-often (thing (find-thing \"POT#1\")))"
                            "step 2"))))))

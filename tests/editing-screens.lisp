@@ -159,8 +159,8 @@ KEYS have been pressed at Robot>."
 (test screen.breaks-messages-between-words
   (is (equal '("Robot> The robot" "has turned a little" "  and a little more" "Robot>")
              (shown-while-typing 20 24 (tell-all :message (format nil "The robot has turned a ~
-                                                                   little~%  and a little ~
-                                                                   more")))))
+                                                                       little~%  and a little ~
+                                                                       more")))))
   (is (equal '("aVeryLongWordThatIsN" "otBroken" "aa bb" "Robot> x")
              (shown-while-typing 20 24 (tell-all :message "aVeryLongWordThatIsNotBroken aa bb")
                                  "x"))))

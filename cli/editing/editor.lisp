@@ -188,9 +188,11 @@ ends the line; other values are ignored.")
   "Insert TEXT, which was pasted. Report if the last lines are taken for output and left out."
   (let ((count (count-output-lines text)))
     (when (plusp count)
-      (write-on-fresh-line (format nil "~D line~:P after the last pasted prompt ~:*~[~;is~:;are~] taken ~
-                                for output and left out.~%" count)
-                           (edited-console stream))))
+      (write-on-fresh-line
+       (format nil "~D line~:P after the last pasted prompt ~:*~[~;is~:;are~] taken for output ~
+                    and left out.~%"
+               count)
+       (edited-console stream))))
   (insert-string stream (without-pasted-output text)))
 
 (defun enter-chosen-line (stream text)

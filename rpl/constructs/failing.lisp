@@ -19,7 +19,7 @@
     (when (name-without-quote-p class scope)
       (style-warn-of-plan-text form
                                "~(~A~) is no variable. The class of a failure is a keyword: (fail ~
-                               :class :~:*~(~A~))." class))))
+                                :class :~:*~(~A~))." class))))
 
 (define-plan-form "FAIL" :may (&rest arguments) (form scope)
   (check-fail form)
@@ -85,7 +85,7 @@
       (style-warn-of-plan-text form
                                "~(~A~) does not fail with class ~S, but sets ~(~A~) to that value. ~
                                After the wait write (if (fluent-value ~(~A~)) ...). To fail, write ~
-                               (fail :class (fluent-value ~(~A~))) there."
+                                (fail :class (fluent-value ~(~A~))) there."
                                (first command) code fluent fluent fluent))))
 
 (define-construct with-failure-handling (clauses &body body)

@@ -130,7 +130,7 @@ missing :INIT counts as (:init t), because the plan of :INIT checks the argument
       (dolist (name (set-difference (first-arguments-in 'policy-get clauses) kept :test #'equal))
         (when (constantp name)
           (warn-of-style "~A: (policy-get ~(~S~)) returns NIL, because no clause stores it.~
-                             ~@[ Stored: ~{~(~S~)~^, ~}.~]"
+                          ~@[ Stored: ~{~(~S~)~^, ~}.~]"
                             definition name kept))))))
 
 (defun policy-code (definition name parameters clauses environment)

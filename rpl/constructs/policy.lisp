@@ -44,20 +44,20 @@ returns a value."
     (cond ((or once-p (not (suspends-p policy scope)))
            (style-warn-of-plan-text form
                                     "the policy ~S waits for nothing: it runs once, before the ~
-                                    body, and then ends. ~:[Write (whenever test form...), or ~
-                                    (seq (wait-for fluent) form...)~;Write ~:*~S~]."
+                                     body, and then ends. ~:[Write (whenever test form...), or ~
+                                     (seq (wait-for fluent) form...)~;Write ~:*~S~]."
                                     policy (and once-p (waiting-policy-form policy))))
           ((only-waits-p policy scope)
            (style-warn-of-plan-text form "the policy ~S does nothing after its wait, so it has no ~
                                     effect. Write what the policy must do: (seq ~:*~S form...), or ~
-                                    (whenever fluent form...) to react each time."
+                                          (whenever fluent form...) to react each time."
                                     policy))
           ((lost-return-form policy)
            (style-warn-of-plan-text form
                                     "~S ends only the policy, and its value is lost; the body goes ~
-                                    on. (fail ...) in the policy ends the whole form; (pursue ~
-                                    (seq (wait-for fluent) value) form...) returns the value of ~
-                                    the form that ends first."
+                                     on. (fail ...) in the policy ends the whole form; (pursue ~
+                                     (seq (wait-for fluent) value) form...) returns the value of ~
+                                     the form that ends first."
                                     (lost-return-form policy))))))
 
 (defun looks-like-policy-p (policy)
@@ -85,8 +85,8 @@ never ends and POLICY a list of steps, or if BODY only waits and then fails, as 
                    (waits-then-fails-p body)))
       (style-warn-of-plan-text form
                                "the body ~S ~:[waits, and then fails~;never ends~], and ~S runs ~
-                               once, in parallel. Write the policy before the body: (with-policy ~
-                               ~:[(seq (wait-for ...) (fail ...))~;(whenever ...)~] form...)."
+                                once, in parallel. Write the policy before the body: (with-policy ~
+                                ~:[(seq (wait-for ...) (fail ...))~;(whenever ...)~] form...)."
                                (if (rest body) (cons 'seq body) (first body))
                                endless-p policy endless-p))))
 

@@ -32,7 +32,7 @@
   (dolist (valve valves)
     (when (and (name-without-quote-p valve scope) (fboundp valve))
       (warn-of-style "~A: ~(~A~) is a function, not a variable. Call it: (with-valve ~
-                         ((~:*~(~A~))) ...)"
+                      ((~:*~(~A~))) ...)"
                         (text-title) valve)))
   (value-lambda `(cons ,priority (list ,@valves)) scope))
 

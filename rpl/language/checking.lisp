@@ -65,7 +65,7 @@ construct of NISP. In packages that do not use NISP, WAIT-FOR is such a macro."
                (not (eq (find-package "COMMON-LISP") (symbol-package name)))
                (nisp-namesake name))
       (style-warn-of-form form "~(~A~) is not the construct of plans, which belongs to NISP. Write ~
-                           (in-package :ars-user), or nisp:~:*~(~A~)." (symbol-name name)))))
+                                (in-package :ars-user), or nisp:~:*~(~A~)." (symbol-name name)))))
 
 (defgeneric advice-on-call (name)
   (:documentation "Return sentences about why the symbol NAME is not the name of a plan procedure or
@@ -93,7 +93,7 @@ plan procedure or function."
            (style-warn-of-form form "a tag has a colon: (:tag name form...)."))
           (t
            (style-warn-of-form form "there is no plan procedure or function ~(~A~).~@[ Did you ~
-                               mean ~A?~]"
+                                     mean ~A?~]"
                                name (nearest-operator name))))))
 
 (defun check-known-call (form)
@@ -218,7 +218,7 @@ later, nor inside a call for which TEST returns :NOWHERE."
     (dolist (variable variables)
       (when (and (symbol-package variable) (not (mentions-p variable where)))
         (style-warn-of-form form "the variable ~(~A~) is never used. If this is intended, write ~
-                             (declare (ignore ~:*~(~A~)))." variable)))))
+                                  (declare (ignore ~:*~(~A~)))." variable)))))
 
 (defun check-distinct-variables (variables form)
   "Signal MALFORMED-DEFINITION if FORM binds one of VARIABLES twice."

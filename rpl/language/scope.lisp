@@ -59,8 +59,8 @@ robot. Then PARAMETERS is probably the first form of the body."
                        (lambda-list-variables parameters))))
     (when name
       (warn-of-style "~A: a parameter has the name of the function ~(~A~). If (~1@*~(~A~)) is ~
-                         the first form of the body, write the list of parameters before it: () ~
-                         if the plan has no parameters."
+                      the first form of the body, write the list of parameters before it: () ~
+                      if the plan has no parameters."
                         definition name))))
 
 (defun untyped-parameters (parameters form environment &optional (definition (text-title)))

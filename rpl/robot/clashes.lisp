@@ -48,8 +48,8 @@ each other for ever. The text does not depend on their order."
     (unless (and said (< tick (+ (cdr said) +takeover-warning-ticks+)))
       (setf (interface-warned interface)
             (acons text tick (remove said (interface-warned interface))))
-      (queue-notable-warning text ". They continue in each tick. Let one at a time own the robot's valve: "
-                   "see RPL-ROBOT-VALVE."))))
+      (queue-notable-warning text ". They continue in each tick. Let one at a time own the robot's "
+                             "valve: see RPL-ROBOT-VALVE."))))
 
 (defun count-takeover (interface resource older newer)
   "Count that the task NEWER, or NIL, has taken RESOURCE over from the task OLDER, or NIL. After too

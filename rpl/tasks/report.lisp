@@ -92,7 +92,7 @@ matches Lisp errors; otherwise NIL."
   (multiple-value-bind (type class) (misspelt-handler-type failure)
     (let ((error-type (handler-type-for-errors failure)))
       (cond (type (format nil "a clause is for ~(~S~), but the class of the failure ~
-                          is ~(~S~)" type class))
+                               is ~(~S~)" type class))
             (error-type
              (format nil "a clause is for ~(~S~), which matches errors of Lisp but not failures of ~
                           FAIL; write ~(~S~) or T" error-type (or (failure-class failure) t)))))))

@@ -76,7 +76,8 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   "Queue a warning that TASKS wait for each other. A task around TASKS may still end one of TASKS."
   (queue-notable-warning "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
                          (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
-                         ". These tasks can go on only if one of them is ended, for example by a deadline."))
+                         ". These tasks can go on only if one of them is ended, for example by a "
+                         "deadline."))
 
 (defun report-wait-cycle (task)
   "Queue a warning if TASK, which has begun to wait, is in a cycle of waits."
@@ -248,8 +249,8 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
         (task (values "task" "(join-task task) waits for the end of a task"))
         (function (values "function" "(wait-until (funcall function)) calls it in each tick")))
     (when kind
-      (warn-of-dubious-wait task (format nil "~A does not wait: its argument is a ~A, ~A, which counts as ~
-                                      true. ~A."
+      (warn-of-dubious-wait task (format nil "~A does not wait: its argument is a ~A, ~A, which ~
+                                              counts as true. ~A."
                                          (form-text (task-form task)) kind (form-text value 40)
                                          remedy)))))
 
@@ -280,9 +281,9 @@ the simulator can cause the events. Only calls from outside can. A thread waits 
 of these tasks."
   (let ((tasks (mapcan #'waiting-parts (plan-runner-tasks runner))))
     (queue-notable-warning "At tick " (runner-tick runner)
-                           " all plans wait for events that neither the "
-                           "robot nor time will cause. SET-VALUE, PULSE or WAKE-UP may still wake them. "
-                           "Control-C ends this wait." (advice-on-endless-waits tasks) t
+                           " all plans wait for events that neither the robot nor time will cause. "
+                           "SET-VALUE, PULSE or WAKE-UP may still wake them. Control-C ends this "
+                           "wait." (advice-on-endless-waits tasks) t
                            (runner-tasks-text runner))))
 
 (defun report-deadlock (runner)

@@ -181,7 +181,7 @@ names KNOWN and suggests the most similar of the names MEANT."
 (wrap-function 'sb-ext:exit #'exit-unless-refused)
 
 (defun call-refusing-exits (function &optional (text "EXIT would end the whole program here. ~
-                                                        Signal an error instead, or return."))
+                                                      Signal an error instead, or return."))
   "Call FUNCTION. Within FUNCTION, EXIT signals MISUSE with TEXT."
   (let ((*exit-refusal* (format nil text))) (funcall function)))
 

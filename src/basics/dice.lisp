@@ -152,7 +152,8 @@ contents. Return DIGEST."))
 
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by their
-elements. All functions count as equal. Other objects are added by DIGEST-ADD-IDENTITY. Return DIGEST."
+elements. All functions count as equal. Other objects are added by DIGEST-ADD-IDENTITY. Return
+DIGEST."
   (declare #.*hot* (type digest digest))
   (typecase datum
     (null (digest-add-word digest (load-time-value (name-hash nil))))

@@ -48,7 +48,7 @@
           (prompt-line-button pane "Trace" (format nil "trace-plans ~:[on~;off~]" traced-p)
                               (format nil
                                       "~:[Keep a trace of what plans do, for the timeline and for ~
-                                    WHY~;A trace of plans is kept; click to discard the trace~]"
+                                       WHY~;A trace of plans is kept; click to discard the trace~]"
                                       traced-p)
                               traced-p))))
 
@@ -92,9 +92,9 @@
         (let ((y (draw-plan-text canvas pane +plan-buttons-height+
                                  "No plan is running. The line PLAN name ... starts a plan.")))
           (draw-plan-ending canvas pane
-                            (draw-plan-lines canvas y
-                                             (prompt-line-button pane "List the plans" "plan"
-                                                                 "List plans that can be started")))))))
+                            (draw-plan-lines
+                             canvas y (prompt-line-button pane "List the plans" "plan"
+                                                          "List plans that can be started")))))))
 
 ;;; Painting.
 

@@ -93,7 +93,7 @@ arguments and could itself be the continuation. False if the value is known to b
   (when (or (returns-nothing-p form) (called-early-p form count))
     (let ((*print-pretty* nil))
       (warn-of-style "~(~A~): ~S is evaluated at once, not when the command has ended, and ~
-                         returns no continuation. Write (continuation (err &rest results) ~:*~S)."
+                      returns no continuation. Write (continuation (err &rest results) ~:*~S)."
                         name (abridged form)))))
 
 (defparameter *command-families* '(:moving :looking :handling :manipulating :thinking)

@@ -24,7 +24,7 @@ an addition.")
   '(member :report :signal :collect))
 
 (defvar *request-origin* nil
-  "The origin, a value of CURRENT-ASKER-NOTE, of the request this thread's messages are about; or NIL.")
+  "The origin, a value of CURRENT-ASKER-NOTE, of the request that messages are about; or NIL.")
 
 (defvar *reported-robot* nil
   "The name of the robot that messages queued in this thread are about, or NIL.")

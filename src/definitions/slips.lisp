@@ -265,7 +265,7 @@ compared form, the word, and the form that compares them."
     (cond ((not (keywordp word))
            (and code
                 (format nil "~(~S~) is no error code, because error codes are ~
-                              keywords. Write ~(~S~)."
+                             keywords. Write ~(~S~)."
                         word code)))
           (code nil)
           ((member word +words-of-success+)

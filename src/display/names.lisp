@@ -119,7 +119,7 @@ same point and for rings around each other, whose names belong together."
                  (+ own (if robots-p +robot-margin+ +thing-margin+)))))
 
 (defun confusable-label-targets-near (spot box spots reach)
-  "Return the CONFUSABLE-LABEL-TARGETS in the index SPOTS to which a name in BOX could seem to belong."
+  "Return the CONFUSABLE-LABEL-TARGETS in the index SPOTS to which a name in BOX might belong."
   (let ((off (+ 1 +robot-margin+ (max 0 (distance-from-label-target spot box)))))
     (destructuring-bind (left top right bottom) box
       (confusable-label-targets
@@ -243,8 +243,9 @@ The name of SPOT is WIDTH pixels wide."
   "Return the box beside SPOT where the name of SPOT, WIDTH pixels wide, is unambiguous and hides
 least. Return NIL if there is no such box."
   (flet ((own-p (box)
-           (unambiguous-name-box-p spot box
-                                   (confusable-label-targets-near spot box spots (name-confusion-distance spot width)))))
+           (unambiguous-name-box-p
+            spot box (confusable-label-targets-near spot box spots
+                                                    (name-confusion-distance spot width)))))
     (best-box snapshot layers
               (boxes-beside (label-target-x spot) (label-target-y spot) (label-target-half spot)
                             width marks)

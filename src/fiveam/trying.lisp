@@ -22,8 +22,8 @@ Trials have ROBOTS; PARAMETERS, lists (name value); no noise if CLEAN; and at mo
 ;;; An experiment for a form.
 
 (defun convert-parameters (parameters operator)
-  "Return PARAMETERS, lists (name value), in the form that EXPERIMENT-FROM-OPTIONS requires. Errors say that
-PARAMETERS is an argument of OPERATOR."
+  "Return PARAMETERS, lists (name value), in the form that EXPERIMENT-FROM-OPTIONS requires. Errors
+say that PARAMETERS is an argument of OPERATOR."
   (unless (and (proper-list-p parameters)
                (every (lambda (part) (and (proper-list-p part) (= 2 (length part)))) parameters))
     (reject-argument operator 'parameters parameters "lists (name value)"))

@@ -134,8 +134,8 @@ there are more than LIMIT pixels."
   (unless (and (null (png-palette png)) (zerop (mod (length content) 3))
                (<= 1 (floor (length content) 3) 256))
     (reject-damaged-png (png-input png) "a palette has 3 to 768 bytes, 3 for each colour, and this ~
-                                     palette has ~D bytes, or is a second ~
-                                     palette" (length content))))
+                                         palette has ~D bytes, or is a second ~
+                                         palette" (length content))))
 
 (defun check-transparency (png content)
   (when (= 3 (png-channels png))

@@ -77,7 +77,7 @@ octet STEP to the left of OVER."
   (when (< (* 1032 (length (png-pixels png))) needed)
     (reject-damaged-png (png-input png)
                         "the pixels take ~D bytes, for which ~D bytes of compressed ~
-                                     data are too few" needed (length (png-pixels png)))))
+                         data are too few" needed (length (png-pixels png)))))
 
 (defun fill-with-rows (png inflater buffer size)
   "Fill BUFFER with the next SIZE octets that INFLATER decompresses from PNG."
@@ -207,7 +207,7 @@ which begin after STEP octets."
   (when (and (png-palette-p png) (find +no-colour+ (the samples samples)))
     (reject-damaged-png (png-input png)
                         "a pixel has a colour that the palette, with ~D colours, does ~
-                                     not have"
+                         not have"
                         (floor (length (png-palette png)) 3))))
 
 ;;; Several channels. Of two octets the high one is the first.

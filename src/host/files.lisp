@@ -270,14 +270,15 @@ also the error output, a string."
       (when errors (uiop:close-streams process)))))
 
 (defun run-attached (program arguments)
-  "Run PROGRAM as RUN-CHILD-PROGRAM does, on this process's standard streams. Return the exit status or NIL."
+  "Run PROGRAM as RUN-CHILD-PROGRAM does, on this process's standard streams. Return the exit status
+or NIL."
   (run-child-program program arguments
                      :input :interactive :output :interactive :error-output :interactive))
 
 (defun run-filter (program arguments input output)
-  "Run PROGRAM with ARGUMENTS as RUN-CHILD-PROGRAM does. Its input is the string INPUT; its output goes to
-OUTPUT, a stream to a file. Return the exit status, or NIL if PROGRAM does not exist, and the error
-output as a string."
+  "Run PROGRAM with ARGUMENTS as RUN-CHILD-PROGRAM does. Its input is the string INPUT; its output
+goes to OUTPUT, a stream to a file. Return the exit status, or NIL if PROGRAM does not exist, and
+the error output as a string."
   (with-input-from-string (in input)
     (multiple-value-bind (status errors)
         (run-child-program program arguments :input in :output output :error-output :stream

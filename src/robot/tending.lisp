@@ -227,7 +227,7 @@ approach does not count, because the approach itself reports it (reading 112)."
                       (some #'camera-tracking (robot-cameras robot)))))
 
 (defun start-track (camera designator operation)
-  "Make CAMERA track DESIGNATOR. At the track's end call NOTIFY-TRACK-END with OPERATION (reading 142)."
+  "Make CAMERA track DESIGNATOR. At the end call NOTIFY-TRACK-END with OPERATION (reading 142)."
   (unless (tracked-p designator)
     (let ((world (robot-world (camera-robot camera))))
       (refresh-once designator (world-tick world) (world-dice world :tracking))

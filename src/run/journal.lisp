@@ -64,10 +64,10 @@ Signals WRONG-ARGUMENT."
   "End JOURNAL, which is full, at TICK, and queue a warning."
   (setf (journal-full-p journal) t
         (journal-end journal) tick)
-  (queue-notable-warning (format nil "The journal is full: it has ~D entries and ends at tick ~D. The run ~
-                             goes on, but can be repeated only up to that tick; see ~
-                            *JOURNAL-LIMIT*."
-                                (journal-length journal) tick)))
+  (queue-notable-warning
+   (format nil "The journal is full: it has ~D entries and ends at tick ~D. The run goes on, but can ~
+                be repeated only up to that tick; see *JOURNAL-LIMIT*."
+           (journal-length journal) tick)))
 
 (defun room-left-p (journal)
   "True if JOURNAL has room for one more entry, or if *JOURNAL-LIMIT* is not a number."

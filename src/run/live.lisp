@@ -188,7 +188,7 @@ MISUSE if the robot no longer fits into its map. See reading 238."
 (define-compiler-macro simulator (&whole form &rest arguments)
   (when (and arguments (evenp (length arguments)) (not (keywordp (second arguments))))
     (warn-of-style "simulator takes one robot and keyword arguments; its world contains all ~
-                       robots of the robot's map."))
+                    robots of the robot's map."))
   form)
 
 (addition stop-simulator)

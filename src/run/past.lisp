@@ -197,9 +197,9 @@ whose removal leaves the smallest gap in proportion to its age."
 (defun discard-past-if-full (simulation past)
   (when (and (finite-p *journal-limit*) (> (past-count past) *journal-limit*))
     (setf (past-forks past) '() (past-acts past) '() (past-count past) 0)
-    (queue-notable-warning (format nil "This run has had so many requests that REWIND can go back only to ~
-                               tick ~D; see *JOURNAL-LIMIT*."
-                                  (simulation-tick simulation)))))
+    (queue-notable-warning (format nil "This run has had so many requests that REWIND can go back ~
+                                        only to tick ~D; see *JOURNAL-LIMIT*."
+                                   (simulation-tick simulation)))))
 
 ;; The clock is coarse, so the cost is averaged over many forks.
 (defun update-fork-cost (past began)

@@ -17,7 +17,7 @@
 (defconstant +longest-number+ 1000 "The most characters of a number.")
 
 (defun tree-p (datum)
-  "True if DATUM is an acyclic tree of up to +MAX-DATUM-CONSES+ conses and +DEEPEST-NESTING+ levels."
+  "True if DATUM is a tree without cycles within +MAX-DATUM-CONSES+ and +DEEPEST-NESTING+."
   (let ((left +max-datum-conses+))
     (labels ((visit (datum depth)
                (loop while (consp datum)

@@ -70,7 +70,7 @@ arguments are compared: which of its commands a plan withdraws is known only on 
       (pop (repetition-acts repetition)))))
 
 (defun redo-in-tick (repetition)
-  "Repeat acts done in this tick after the world changed, up to the current moment (RECORD-CODE-MOMENT)."
+  "Repeat acts of this tick after the world changed, up to this moment (RECORD-CODE-MOMENT)."
   (loop with moments = (timeline-moments (simulation-timeline (repetition-simulation repetition)))
         for act = (pop-due-act repetition (lambda (act)
                                             (and (eq :change (act-kind act))

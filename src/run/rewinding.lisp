@@ -82,9 +82,9 @@ first, of requests made but not performed by then."
 
 (defun warn-of-divergence (run tick)
   (let ((*message-queue* (simulation-messages run)))
-    (queue-notable-warning (format nil "The rewound run differs from the original: from tick ~D on a plan ~
-                               acts differently, which can happen if it depends on state outside ~
-                               its run."
+    (queue-notable-warning (format nil "The rewound run differs from the original: from tick ~D on ~
+                                        a plan acts differently, which can happen if it depends on ~
+                                        state outside its run."
                                    tick))))
 
 (defun repeat-past (past asked tick)

@@ -150,7 +150,8 @@ at most -SUM. The observed sum counts as a draw, so the share is never 0 (Phipso
   "The largest p value that is estimated again with tilted signs if RARE-TOO is true.")
 
 (defun estimated-tail-probability (sizes sum grain resamples seed rare-too)
-  "Return the DRAWN-TAIL-PROBABILITY. If it is small and RARE-TOO is true, return the RARE-TAIL-PROBABILITY instead."
+  "Return the DRAWN-TAIL-PROBABILITY. If it is small and RARE-TOO is true, return the
+RARE-TAIL-PROBABILITY instead."
   (let ((share (drawn-tail-probability sizes sum grain resamples (make-dice seed "permutation"))))
     (if (and rare-too (<= share +rare-probability-limit+))
         (rare-tail-probability sizes sum grain resamples (make-dice seed "rare signs"))

@@ -183,8 +183,8 @@ cache. Worlds of MAP see the change at once. Return the map."
 (defun define-map (name width height &key cache (frame '(1 0 0 0)) clauses code
                                        (package *package*))
   "Define or redefine the map NAME. DEFMAP expands to a call of this function. FRAME is a value of
-MAP-FRAME, CODE the value of a form made by COMPILED-CODE-FORM, and PACKAGE the package that the author
-writes in. Return the map."
+MAP-FRAME, CODE the value of a form made by COMPILED-CODE-FORM, and PACKAGE the package that the
+author writes in. Return the map."
   (unless (typep cache '(or null string pathname))
     (reject-clause (definition-title "defmap" name) (list :cache cache) "the name of a file"))
   (check-map-memory (definition-title "defmap" name) width height)

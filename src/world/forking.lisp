@@ -89,7 +89,7 @@ function that copies attachments."
        (null (thing-contents thing))))
 
 (defun complete-thing-copy (thing old new copier)
-  "Replace the location and the contents of the copy of THING by their copies. See FIND-COPY-BY-RANK."
+  "Replace location and contents of the copy of THING by their copies. See FIND-COPY-BY-RANK."
   (declare (type thing thing))
   (flet ((twin (other) (or (find-copy-by-rank other old new) (forked other copier))))
     (let ((twin (twin thing)))

@@ -291,7 +291,7 @@ and true if no type was left out (reading 70)."
                       (covering-types rules (ldiff types (member type types))))))
     (when takers
       (warn-of-style "~A: all cells that fit are of the type ~{~(~A~)~^ or ~} already; the type ~
-                         that was defined earlier wins; to let this type win, write :before ~(~A~)"
+                      that was defined earlier wins; to let this type win, write :before ~(~A~)"
                         definition (mapcar #'place-type-name takers)
                         (place-type-name (find-if (lambda (other) (member other takers))
                                                   types))))))

@@ -245,7 +245,7 @@ of other slots of an experiment."
     experiment))
 
 (defun define-experiment (name &rest options)
-  "Define and return the experiment NAME. OPTIONS are those of EXPERIMENT-FROM-OPTIONS. A DEFEXPERIMENT form
-expands to a call of DEFINE-EXPERIMENT."
+  "Define and return the experiment NAME. OPTIONS are those of EXPERIMENT-FROM-OPTIONS. A
+DEFEXPERIMENT form expands to a call of DEFINE-EXPERIMENT."
   (register *experiments* name
             (apply #'experiment-from-options name (definition-title "defexperiment" name) options)))

@@ -31,8 +31,8 @@
   "Warn of a WITH-SIMULATION in FORMS, which a trial evaluates."
   (when (mentioned-p 'with-simulation forms)
     (warn-of-style "a trial is already a run. A with-simulation in it starts another run, with ~
-                       the same seed in each trial, and measures do not see that run. Leave ~
-                       with-simulation out: (run-plan ...) alone.")))
+                    the same seed in each trial, and measures do not see that run. Leave ~
+                    with-simulation out: (run-plan ...) alone.")))
 
 ;;; A plan's name.
 
@@ -61,8 +61,8 @@
              (same-name-p 'run-plan (first (second form))))
     (let ((*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 10000))
       (warn-of-style ":run: a plan that fails has its failure as the value, which is true, so ~
-                         that ~S is T even then. Write only ~S, whose second value says how the ~
-                         plan ended, or a clause (:success form)."
+                      that ~S is T even then. Write only ~S, whose second value says how the ~
+                      plan ended, or a clause (:success form)."
                         (abridged form) (abridged (second form))))))
 
 (defun number-as-test-advice (form)
@@ -116,5 +116,5 @@ false."
               (and name (fboundp name)))
       (let ((*print-case* :downcase) (*print-pretty* nil))
         (warn-of-style "~A: the measure ~(~A~) is quoted: its value would be the form. Write ~
-                           the form alone: ~:[~S~;(~S ...)~]."
+                        the form alone: ~:[~S~;(~S ...)~]."
                           definition (first part) name (or name (second (second part))))))))

@@ -25,8 +25,8 @@
 (defvar *inspection-context* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
 
 (defun call-outside-trial (function)
-  "Call FUNCTION, which inspects a trial that runs again. The *INSPECTION-VARIABLES* have their values from
-outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION do not count."
+  "Call FUNCTION, which inspects a trial that runs again. The *INSPECTION-VARIABLES* have their
+values from outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION do not count."
   (let ((outside *inspection-context*))
     (progv *inspection-variables* (outside-values outside)
       (let ((*inspecting-p* t))

@@ -149,7 +149,7 @@ that has no parts itself. PATH maps the compounds around the current part to the
     (t (table-value-p key))))
 
 (defun weak-digests (object atom)
-  "Return digests of what OBJECT, a weak pointer or table, holds now. ATOM is as for MAP-DATA-ATOMS."
+  "Return digests of what OBJECT, a weak pointer or table, holds. ATOM is as for MAP-DATA-ATOMS."
   (if (weak-pointer-p object)
       (let ((target (weak-value object)))
         (and target (list (map-data-atoms target atom))))

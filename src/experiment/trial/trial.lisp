@@ -158,7 +158,7 @@ as its first value. A failure counts as true, so :run may have taken the failure
       (set-first-error result
                        (format nil "The plan ~A failed (~A), and :run went on. The second value of ~
                               RUN-PLAN says how a plan ended; the first is the failure, which is ~
-                              true."
+                                    true."
                                (task-label task) (failure-text (task-result task)))))))
 
 (defun evaluate-trial (experiment result)
