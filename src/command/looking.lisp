@@ -91,7 +91,8 @@ that the attributes can have; a range begins with its lower end"
      (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
               (:invalid-place-type (operation-formatter "~*~A is not a place type"))
-              (:invisible-place-type (operation-formatter "~*~A can only be recognized nearby"))
+              (:invisible-place-type
+               (operation-formatter "~*~A cannot be recognized at a distance"))
               (:camera-enclosed (operation-formatter "~A is inside a container"))
               (:designator-not-found (operation-formatter "~A found no ~A")))
      (:report (designator) (found-message operation (list designator))))
@@ -107,7 +108,8 @@ code :DESIGNATOR-NOT-FOUND means that the camera found no place; this is no fail
      (:prefix "get-all-designators") (:delay camera-desig-delay*)
      (:errors (:already-tracking #'already-tracking-text)
               (:invalid-place-type (operation-formatter "~*~A is not a place type"))
-              (:invisible-place-type (operation-formatter "~*~A can only be recognized nearby"))
+              (:invisible-place-type
+               (operation-formatter "~*~A cannot be recognized at a distance"))
               (:camera-enclosed (operation-formatter "~A is inside a container"))
               (:designator-not-found (operation-formatter "~A found no ~A")))
      (:report (designators) (found-message operation designators)))
