@@ -283,7 +283,7 @@ and try again. If the second try fails, too, exit with status 2."
   ;; Files in the core must not be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)
-  (uiop:symbol-call :ars-magna.cli :make-process-own)
+  (uiop:symbol-call :ars-magna.cli :mark-process-as-own)
   (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE")
                             :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
 
