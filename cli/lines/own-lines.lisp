@@ -42,8 +42,7 @@ command, or if aliases would form a cycle."
 
 (define-line "EVAL" (session (exp :form "a Lisp form"))
     (:general)
-    "Evaluate EXP as Lisp and print its values. A line that begins with a parenthesis is evaluated,
-too."
+    "Evaluate EXP as Lisp and print its values. A line that begins with ( is evaluated, too."
   (let ((*asker* (asker-for (session-account session)))) (evaluate-text session exp)))
 
 (defun parse-switch (name word)

@@ -173,15 +173,13 @@ close the window at any time. The window closes by itself when the run is over."
 (define-line "IMPORT" (session (file :file "a YAML file, as ROS's map_server keeps them"))
     (:seeing)
     "Make a map, named like FILE, of the occupancy grid in FILE and the image that FILE names. In
-the simulator each cell is one metre wide, whatever its real size: GO 5 m drives through five
-cells."
+the simulator each cell is one metre wide, whatever its real size: GO 5 m crosses five cells."
   (multiple-value-call #'describe-imported-map (import-map file)))
 
 (define-line "EXPORT" (session (file :file "a name that ends in .yaml"))
     (:seeing)
-  "Write the walls of the robot's map to FILE, as an occupancy grid for ROS's map_server, and an
-image in PGM beside FILE. Maps saved under the same names are replaced, but no other files. IMPORT
-reads both files."
+  "Write the walls of the robot's map to FILE, as an occupancy grid for ROS's map_server, and a PGM
+image beside it. Only maps saved under the same names are replaced. IMPORT reads both files."
   (multiple-value-bind (description image)
       (export-map (world-map (robot-world (session-robot))) file)
     (format t "~A~%~A~%" (native-name description) (native-name image))))

@@ -134,8 +134,7 @@ ended has failed, tell where and why it failed."
 
 (define-line "STOP-PLAN" (session (n count "the number of a running plan" :optional))
     (:planning)
-    "End the plan N, or all running plans. Commands that these plans gave to the robot are
-interrupted."
+    "End the plan N, or all running plans. Their commands to the robot are interrupted."
   (cond ((null (plans)) (reject-line "No plan is under way."))
         (n (end-plan (or (find n (plans) :key #'task-serial)
                          (reject-line "No plan ~D is under way. PLANS lists the plans." n))))
@@ -227,9 +226,8 @@ OUT or CONTINUE. OFF ends stepping. Without a terminal or window, each stop is o
             (task-number-and-label task) on-p)))
 
 (define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)
-    "Trace what plans do from now on, including running plans, for WHY, PLAN-TIMELINE and the
-window's timeline. OFF stops tracing and discards the trace. Without ON or OFF, tell whether plans
-are traced."
+    "From now on, trace plans, including running ones, for WHY, PLAN-TIMELINE and the window's
+timeline. OFF stops tracing and discards the trace. Without ON or OFF, tell if plans are traced."
   (when switch
     (let ((on-p (parse-switch "TRACE-PLANS" switch)))
       ;; A plan may hold the lock of all plans: then none is asked, and nothing changes.

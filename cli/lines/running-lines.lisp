@@ -43,8 +43,7 @@
              (format t "~A~%" (time-description session simulation))))))
 
 (define-line "RESUME" (session) (:running)
-    "Let time pass again after PAUSE or STOP-SIMULATOR. In a trial without a terminal, run the
-trial to its end."
+    "Let time pass again after PAUSE or STOP-SIMULATOR. A trial without a terminal runs to its end."
   (if (session-trial session)
       (resume-trial (session-trial session))
       (resume-run session)))

@@ -149,8 +149,7 @@ line tells if no ticks pass now. In Lisp: (status)."
 
 (define-line "POS" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:seeing)
-    "Put the robot at X, Y at once, without error and ignoring obstacles. A message tells if this
-point is inside a wall."
+    "Put the robot at X, Y at once, exactly, ignoring obstacles. A message tells of a wall there."
   (let ((robot (session-robot)))
     (place-robot robot x y (robot-angle robot))))
 

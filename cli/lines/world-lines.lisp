@@ -45,8 +45,7 @@
 (define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional)
                               (robot :robot-name "a robot there; the first if left out" :optional))
     (:seeing)
-    "List the worlds, or start a new run in the world NAME, at tick 0, and command ROBOT there. The
-present run ends."
+    "List the worlds, or end this run and start one in the world NAME at tick 0, to command ROBOT."
   (if name
       (start-world-of-robot session (choose-robot-name (robot-names-in-world name) robot))
       (write-worlds)))
@@ -69,8 +68,7 @@ present run ends."
 
 (define-line "ROBOT" (session (name :robot-here "the robot to command" :optional))
     (:seeing)
-    "List the robots of this world, or command its robot NAME from now on. WORLD leads to other
-worlds and their robots."
+    "List this world's robots, or command its robot NAME from now on. WORLD leads to other worlds."
   (let ((name (and name (resolve-robot-name name))))
     (cond ((null name) (write-robots))
           ((member name (current-robot-names))

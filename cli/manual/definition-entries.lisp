@@ -195,8 +195,7 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
     (("RED" "GREEN" "BLUE" "VIOLET" "LIGHTRED" "LIGHTGREEN" "LIGHTBLUE" "LIGHTVIOLET")
      "A value of the attribute :COLOR.")
     (("VOID" "LST" "~" "THING-DESCRIPTOR" "ROBOT-CONTINUATION")
-     "A name of a type in Nisp. DEFFUNC, DEFPROC and LET accept such a name and ignore it (manual
-3.1)."))
+     "A name of a type in Nisp. DEFFUNC, DEFPROC and LET accept and ignore it (manual 3.1)."))
   "Lists (names text): the descriptions of names that are only symbols.")
 
 (defun plain-symbol-text (symbol)

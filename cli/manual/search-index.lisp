@@ -146,8 +146,7 @@ Synonyms leave out a, an, the and my, because the search ignores these words.")
                         (row-words row)))))
 
 (defun write-index (out book)
-  "Write the search index to OUT as JavaScript. Synonyms come first, because the search prefers the
-first of equally good rows."
+  "Write the search index to OUT as JavaScript. Synonyms come first: they beat equally good rows."
   (let ((rows (append (mapcar #'entry-row (book-entries book))
                       (mapcan #'page-rows (copy-list (book-pages book))))))
     (format out "var SEARCH_INDEX = [~%~{~A~^,~%~}~%];~%"

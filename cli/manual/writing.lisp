@@ -137,8 +137,7 @@
                                       (example-link-html example)))))))
 
 (defparameter *note-on-examples*
-  "A link leads from each example to its page. Definitions that the example uses are further up on
-that page."
+  "A link leads from each example to its page, where the definitions that it uses are further up."
   "A note on examples, shown in each chapter of the reference.")
 
 ;;; Entries and chapters.

@@ -128,8 +128,7 @@ breaks."))
           (global-debugger-hook) (shared-debugger-hook))))
 
 (defun other-front-end-answers-p ()
-  "True if another front end, such as an editor, answers breaks, and the simulator itself has
-started this thread."
+  "True if another front end, say an editor, answers breaks and the simulator started this thread."
   (let ((hook (global-debugger-hook)))
     (and (own-thread-p) (null *prompt-debugger-hooks*) hook (not (disabled-hook-p hook)))))
 

@@ -3,9 +3,8 @@
 (in-package :ars-magna.cli)
 
 (defvar *completer* nil
-  "NIL, or a function that completes text. The function gets a text and the position of the cursor.
-It returns the start of the part to complete, a list of all completions, and the text to add after a
-single completion.")
+  "NIL, or a function that completes text. It gets a text and a cursor position, and returns the
+start of the part to complete, a list of completions, and the text to add after a single one.")
 
 (defun common-start (texts)
   "Return the longest common beginning of TEXTS, ignoring case."
@@ -242,9 +241,8 @@ where the first argument begins."
          (unit-names dimension))))
 
 (defun argument-completion-values (start texts quoted-p)
-  "Return the values of COMPLETIONS-IN for an argument that begins at START and has the completions
-TEXTS. Quote the completions if QUOTED-P is true (the argument begins with a double quote) or one of
-TEXTS has a blank."
+  "Return the values of COMPLETIONS-IN for an argument at START with the completions TEXTS. Quote
+them if QUOTED-P is true (the argument begins with a double quote) or one of TEXTS has a blank."
   (if (or quoted-p (some (lambda (text) (some #'blank-character-p text)) texts))
       (values start (mapcar (lambda (text) (uiop:strcat "\"" text)) texts) "\" ")
       (values start texts " ")))

@@ -84,8 +84,7 @@ SENTENCE is its help; DETAILS, strings, are paragraphs below the parameters."
 ;;; What a plan takes.
 
 (defun plan-parameter-usage (parameter keyword)
-  "Return how to type the argument for PARAMETER of a plan. KEYWORD is the lambda list keyword
-before PARAMETER, or NIL."
+  "Return how to type the argument for a plan's PARAMETER after the lambda list KEYWORD (or NIL)."
   (let ((name (if (consp parameter) (first parameter) parameter)))
     (ecase keyword
       ((nil) (format nil "~(~A~)" name))

@@ -141,9 +141,8 @@ pending messages of SESSION."
   "Run the command-line interface: prompt for commands to the robot last given to SIMULATOR, until
 QUIT or the end of input. INPUT and OUTPUT are streams, by default the standard ones. If PATIENT, or
 headless, each command completes before the next line is read. BATCH means PATIENT and no prompt.
-With ECHO, lines are shown as they are read. The lines in the list LINES run first. COLOR is :AUTO
-(on a terminal, unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual A,
-E)."
+With ECHO, lines are shown when read. The lines in the list LINES run first. COLOR is :AUTO (on a
+terminal, unless the environment has NO_COLOR), :ALWAYS or :NEVER. Returns nothing (manual A, E)."
   (declare (ignore input batch patient echo lines color))
   (let ((session (apply #'make-session options)))
     (in-any-case
@@ -196,8 +195,7 @@ QUIT. Other sessions then get the questions of SESSION and the messages of its r
   (and (break-state-own (session-break-state session)) (substitute-sessions session) t))
 
 (defun end-session (session)
-  "End SESSION, from another thread. A running line is interrupted; a line being typed, or typed
-ahead, is not run."
+  "End SESSION from another thread. Interrupt its line; run no line typed ahead or being typed."
   (setf (session-over-p session) t)
   (interrupt-session session)
   (end-queued-input (typed-octets (session-input session))))

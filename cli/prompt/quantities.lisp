@@ -80,8 +80,7 @@ digits, the number is 1, or -1 after a minus sign."
       (values 1 text)))
 
 (defun joined-quantity (name)
-  "NAME is the name of a symbol such as 90DEG. Return its number and its unit, a list or NIL. Return
-NIL if NAME is no quantity."
+  "Return the number and unit, a list or NIL, of NAME, such as 90DEG; NIL if NAME is no quantity."
   (multiple-value-bind (number end) (leading-number name)
     (when (and number (< end (length name)))
       (multiple-value-bind (factor rest)

@@ -40,8 +40,7 @@
     (and ink (make-keyword (car ink)))))
 
 (defun painted-spans (text)
-  "Return TEXT, a line coloured by PAINT, as a list of lists (text ink); INK is a keyword, or NIL
-where nothing was painted."
+  "Return TEXT, a line coloured by PAINT, as lists (text ink); INK is a keyword, NIL if unpainted."
   (let ((spans '()) (ink nil) (start 0))
     (loop
       (let ((escape (position +escape+ text :start start)))

@@ -89,11 +89,10 @@
                                (first command) code fluent fluent fluent))))
 
 (define-construct with-failure-handling (clauses &body body)
-  "Run BODY in a plan, and handle a failure by the first of CLAUSES with a matching type. A clause
-is (type (variable) form...). A type is T, a class given to FAIL, a condition type of failures or of
-Lisp, or (or type...). The handler may wait. In a handler, (return value) ends WITH-FAILURE-HANDLING
-with VALUE, and (retry) runs BODY again. If a handler reaches its end, the failure propagates.
-Return all values of BODY."
+  "Run BODY in a plan and return all its values. The first of CLAUSES whose type matches handles a
+failure. A clause is (type (variable) form...). A type is T, a class given to FAIL, a condition type
+of failures or of Lisp, or (or type...). Handlers may wait. In a handler, (return value) ends
+WITH-FAILURE-HANDLING with VALUE, and (retry) reruns BODY; else the failure propagates."
   (:parts (body node (scope-retry scope))
           (types list `',(mapcar #'first clauses))
           (handlers simple-vector `(vector ,@(loop for clause in clauses
@@ -173,8 +172,7 @@ RESET-COUNTER. (From CRAM, except that a counter is also a variable.)"
                    ,@body)))))
 
 (define-construct do-retry (counter &body body)
-  "Decrement COUNTER and run BODY, usually (retry), if COUNTER is positive. For use in a failure
-handler. (From CRAM.)"
+  "If positive, decrement COUNTER and run BODY, usually (retry). For failure handlers. (From CRAM.)"
   (:in-lisp `(when (plusp ,counter)
                (decf ,counter)
                ,@body)))

@@ -4,9 +4,8 @@
 
 (export '(advice-on-goal))
 
-;;; In a shape, a pattern made ready for matching, a HOLE is where anything may be; the holes of one
-;;; variable are one hole, and match the same. The rest compares as attribute values do: symbols by
-;;; name, numbers by value.
+;;; In a shape, a prepared pattern, a HOLE matches anything; a variable's holes are one object and
+;;; match the same. The rest compares like attribute values: symbols by name, numbers by value.
 
 (defstruct (hole (:constructor make-hole (variable index)) (:copier nil))
   "A place in a shape where VARIABLE matches anything. INDEX is the number of the variable."

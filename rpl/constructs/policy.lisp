@@ -38,8 +38,7 @@
                   (cddr policy))))
 
 (defun warn-of-policy-mistake (policy form scope)
-  "Warn if POLICY, the policy of FORM in SCOPE, waits for nothing, does nothing after its wait, or
-returns a value."
+  "Warn if FORM's POLICY in SCOPE waits for nothing, does nothing after a wait or returns a value."
   (let ((once-p (tests-once-p policy scope)))
     (cond ((or once-p (not (suspends-p policy scope)))
            (style-warn-of-plan-text form

@@ -5,12 +5,11 @@
 (export '(claim-p valve))
 
 ;;; A task claims one or several valves, all at once or none. CLAIMS of a valve are those granted,
-;;; the newest first. A part of a task that owns a valve may own it as well, one part at a time.
-;;; So the OWNER-CLAIMS of a valve are its owner's claim, the first one, and those of the tasks
-;;; around the owner; between them may be claims that parts have lost to parts. Any other claim was
-;;; preempted: it has LOST the valve, and its task is suspended. OUTER leads from a claim to the
-;;; claims of tasks around its own that owned the valve when it was granted: they give it back only
-;;; after this claim.
+;;; the newest first. A part of a task that owns a valve may own it as well, one part at a time. So
+;;; the OWNER-CLAIMS of a valve are its owner's claim, the first one, and those of tasks around it;
+;;; between them may be claims that parts have lost to parts. Any other claim was preempted: it has
+;;; LOST the valve, and its task is suspended. OUTER leads from a claim to the claims of tasks
+;;; around its own that owned the valve when it was granted: they return it only after this claim.
 ;;;
 ;;; Waiting claims queue by priority, then level, then order of arrival, in a LINE for each
 ;;; priority and level. A claim to several valves can be overtaken by claims that can be granted.

@@ -39,15 +39,13 @@
 (define-construct with-valve ((valve &key priority) &body body)
   "Run BODY in a plan while the task owns VALVE. If another task owns VALVE, wait first. VALVE is
 released however BODY ends. Return all values of BODY.
-  Waiting tasks queue by PRIORITY, a number, by default 0. Among equal priorities, policies come
-first.
+  Waiting tasks queue by PRIORITY, a number, by default 0. Among equals, policies come first.
   A task with a higher PRIORITY than the owner's takes VALVE. The owner is suspended, with its
 parts, until it gets VALVE back. So two tasks that own one resource never run together.
 ON-SUSPENSION and RETRY-AFTER-SUSPENSION define how the owner reacts. Cleanups of an evaporating
 owner are not disturbed.
   A part of the owner can own VALVE as well, one part at a time.
-If tasks wait for each other's valves, an error message says so (manual D; priorities are an
-addition)."
+If tasks wait for each other's valves, an error says so (manual D; priorities are an addition)."
   (:arguments valve priority)
   (:parts (request function (claim-lambda priority (list valve) scope))
           (body node (body-code body scope)))

@@ -135,9 +135,8 @@ Signals WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
 ;;; Doubly linked lists, so that leaving one costs the same however many are in it.
 
 (defmacro define-linked-list (type list-of &key (in 'fluent) join leave)
-  "Define the functions JOIN and LEAVE, which append a member of TYPE to a doubly linked list or
-remove it. (LIST-OF member) returns the structure of type IN that has the list in its slots
-FIRST-TYPE and LAST-TYPE."
+  "Define JOIN and LEAVE, which append a member of TYPE to a doubly linked list or remove it.
+(LIST-OF member) returns the structure of type IN with the list's slots FIRST-TYPE and LAST-TYPE."
   (let ((first (symbolicate in '-first- type))
         (last (symbolicate in '-last- type))
         (previous (symbolicate type '-previous))

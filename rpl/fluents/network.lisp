@@ -303,8 +303,7 @@ because the values of fluents may refer to each other.")
                               :format-arguments (list (fluent-text fluent))))))))
 
 (defun repair-fluents (home watchers unwanted-p)
-  "Register again in HOME: WATCHERS, and the other watchers of their fluents, except those for which
-UNWANTED-P is true."
+  "Register again in HOME: WATCHERS and other watchers of their fluents, except UNWANTED-P ones."
   (let* ((fluents (reachable-fluents watchers))
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))

@@ -136,8 +136,7 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
                    (unless how (return)))))))))
 
 (defun propagate (fluent kind)
-  "Notify all watchers and dependents of the base fluent FLUENT of its change or pulse. KIND is as
-for RENEW."
+  "Notify watchers and dependents of the base fluent FLUENT of a change or pulse (KIND: see RENEW)."
   (notify-watchers fluent)
   (when (fluent-first-link fluent)
     (propagate-to-dependents fluent kind)))

@@ -73,8 +73,7 @@ function, and what to write instead; or NIL. Layers that know more names have me
   (:method (name) (declare (ignore name)) nil))
 
 (defun unknown-call-remedy (name)
-  "Return a text that gives NAME and says what to write instead; or NIL. NAME is not the name of a
-plan procedure or function."
+  "Return advice with NAME on what to write instead, or NIL. NAME is no plan procedure or function."
   (let ((namesake (find-procedure name nil)) (advice (advice-on-call name)))
     (cond (namesake
            (format nil "~(~S~). If you mean the plan in another package, write ~(~S~)."

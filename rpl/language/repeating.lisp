@@ -30,8 +30,7 @@
    (getting-result (unwind task frame (make-escape target value)))))
 
 (setf (documentation 'make-leave 'function)
-      "Return a node that leaves a block, with the slots TARGET, the node of the block, and RESULT,
-the node for the value.")
+      "Return a node that leaves a block. Slots: TARGET, the block's node; RESULT, the value's.")
 
 (defun block-code (name form scope coder)
   "Return the code that CODER returns for a scope inside a block with the name NAME. FORM is the

@@ -128,8 +128,7 @@ nodes" :writable :export)
   (tags '() list :writable)
   (procedures '() list :writable)
   (retry nil symbol
-         "the variable of the node that (retry) begins again; NIL outside of failure
-handlers" :writable :export)
+         "the variable of the node that (retry) reruns; NIL outside handlers" :writable :export)
   (task-tags '() list :writable)
   (fluents '() list "the variables that are known to hold fluents" :writable)
   (several nil boolean :writable))

@@ -199,8 +199,7 @@ Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
   expansion)
 
 (defun note-expansion (expansion form)
-  "Record that EXPANSION counts as text of the plan itself, and that it stands for FORM. Return
-EXPANSION."
+  "Record that EXPANSION counts as text of the plan itself and stands for FORM. Return EXPANSION."
   (note-plan-text (note-written-as expansion form)))
 
 (defun plan-text-p (form)

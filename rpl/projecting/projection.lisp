@@ -5,9 +5,8 @@
 (addition projection-p)
 
 (defstruct (rollout-start (:constructor make-rollout-start (question moment branch)) (:copier nil))
-  "The start of rollouts that try BRANCH, a number, of QUESTION. MOMENT is a fork in which a copy of
-QUESTION waits for its answer; rollouts are forks of MOMENT. Without a MOMENT, rollouts begin in a
-believed world."
+  "The start of rollouts that try BRANCH, a number, of QUESTION. MOMENT is a fork where a copy of
+QUESTION awaits its answer; rollouts are forks of it. Without it, they begin in a believed world."
   (question nil :read-only t)
   (moment nil :read-only t)
   (branch 0 :type fixnum :read-only t))
@@ -40,8 +39,7 @@ without waiting" :addition)
 
 (addition rollout-value)
 (defun rollout-value (rollout)
-  "Return the value of the plan in ROLLOUT if it succeeded, or NIL. The value may be an object of a
-run that is over."
+  "Return the value of ROLLOUT's plan if it succeeded, or NIL. It may belong to a finished run."
   (and (rollout-succeeded-p rollout) (rollout-result rollout)))
 
 (addition rollout-failure)
@@ -110,9 +108,8 @@ Signals WRONG-ARGUMENT unless CONFIDENCE is between 0 and 1."
 
 (addition projection-failures)
 (defun projection-failures (projection)
-  "Return a list of conses (reason . count), the most frequent reason first, for the rollouts of
-PROJECTION that did not succeed. A reason is the class of a failure or its condition type, or else
-the rollout's state."
+  "Return a list of conses (reason . count), the most frequent reason first, for the unsuccessful
+rollouts of PROJECTION. A reason is a failure's class or condition type, or the rollout's state."
   (let ((counts '()))
     (dolist (rollout (projection-rollouts projection))
       (unless (rollout-succeeded-p rollout)

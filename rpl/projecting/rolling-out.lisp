@@ -117,9 +117,8 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
                                     to no run, such as numbers, symbols and lists of these")))))
 
 (defun call-without-run (function)
-  "Call FUNCTION without a current simulation, and with the variables of the robots unbound.
-FUNCTION can change only runs that it makes itself. Changes of existing fluents have no effect
-outside, as in a fork."
+  "Call FUNCTION without a current simulation, and with the robots' variables unbound. FUNCTION can
+change only runs that it makes. Changes to existing fluents have no effect outside, as in a fork."
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (progv (mapcar #'robot-name robots) '()
       (progv *simulation-variables* (mapcar #'symbol-value *simulation-variables*)

@@ -4,9 +4,8 @@
 
 (addition *plan-command-limit*)
 
-;;; A plan whose command was interrupted may issue it again, and so interrupt the other plan, which
-;;; then does the same. No time passes meanwhile. After *MOST-TAKEOVERS* in a tick each further one
-;;; ends the reaction.
+;;; A plan whose command was interrupted may reissue it, and so interrupt the other plan, which does
+;;; the same. No time passes. After *MOST-TAKEOVERS* in a tick each further one ends the reaction.
 
 (defparameter *most-takeovers* 100
   "How often plans may take one part of the robot from each other before time has to pass.")

@@ -167,9 +167,8 @@ fluent, is its number. Signals WRONG-ARGUMENT; and MISUSE without a robot."
 
 (public rpl-grab-robot)
 (defun rpl-grab-robot ()
-  "Stop the current command of the robot itself. Its fluents change at once: the error fluent
-becomes :INTERRUPT, and the fluent for the end is pulsed. The robot stands still from the next tick
-on (manual C)."
+  "Stop the robot's own current command. Its fluents change at once: the error fluent becomes
+:INTERRUPT, and the end fluent is pulsed. The robot stands still from the next tick on (manual C)."
   (grab (required-interface) (rpl-robot))
   (values))
 

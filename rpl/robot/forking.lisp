@@ -110,8 +110,7 @@ Return FLUENT itself if no variable holds FLUENT."
         finally (return fluent)))
 
 (defun repeat-fluent-change (function name value)
-  "Call FUNCTION with the fluent of this run with the name NAME (see FLUENT-VARIABLE-AND-INDEX) and
-VALUE."
+  "Call FUNCTION with this run's fluent NAME (see FLUENT-VARIABLE-AND-INDEX) and VALUE."
   (funcall function
            (if (consp name)
                (destructuring-bind (variable index) name

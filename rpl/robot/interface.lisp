@@ -139,8 +139,7 @@ plan waits for time, or if a plan is ready. Any thread may call this function."
   (let ((task (interface-hog interface)))
     (and task (eq :running (task-state task)) (not (plans-in-debugger-p interface)) task)))
 
-;; At a plain REPL a thread that waits for the plans gives their debugger the terminal. An editor
-;; shows it elsewhere.
+;; At a REPL, threads waiting for plans give the debugger the terminal. Editors show it elsewhere.
 (defun check-not-in-debugger (interface)
   "Signal MISUSE if the plans of INTERFACE, in another thread, have stopped in a debugger."
   (when (and (plans-in-debugger-p interface)

@@ -134,12 +134,11 @@ there is no such clause. PART is the name of the command's argument for the part
                    (< (length parameters) (length forms)) (plan-call-text command-name))))
 
 (defmacro define-outcome (commands (&rest results) &body clauses)
-  "Define the plan functions of COMMANDS. When a command ends, CLAUSES are carried out with ERR
-bound to its error code and RESULTS to its results: (:set fluent form); (:error fluent), which sets
-the fluent to ERR; (:pulse fluent); (:when form clause...). When a newer command of a plan
-interrupts a command, CLAUSES are carried out at once, with :INTERRUPT and no results. A later
-answer to the interrupted command sets only the fluents of :SET, which describe the state of the
-robot. See reading 179."
+  "Define the plan functions of COMMANDS. When a command ends, CLAUSES run with ERR bound to its
+error code and RESULTS to its results: (:set fluent form); (:error fluent), which sets the fluent to
+ERR; (:pulse fluent); (:when form clause...). When a newer command of a plan interrupts a command,
+CLAUSES run at once, with :INTERRUPT and no results. A later answer to the interrupted command sets
+only the fluents of :SET, which describe the robot's state. See reading 179."
   `(progn
      ,@(loop for command-name in commands
              for (resource specifications sentence) = (command-signature command-name)

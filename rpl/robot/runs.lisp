@@ -105,8 +105,7 @@ plan will ever go on, or :LIMIT at tick LAST."
       (run-ticks 1 simulation))))
 
 (defun final-state-of-task (interface task)
-  "Return the state of TASK if it is over; :STOPPED if TASK evaporated with all plans of INTERFACE;
-NIL if TASK goes on."
+  "Return TASK's state if over, :STOPPED if it evaporated with all plans of INTERFACE, else NIL."
   (cond ((not (task-over-p task)) nil)
         ((or (ended-by-itself-p task) (interface-valid-p interface)) (task-state task))
         (t :stopped)))

@@ -59,9 +59,8 @@ running; otherwise end the plan between two steps."
         (stop-plan (interface-runner interface) (task-top (sample-task sample))))))
 
 (defun watch-plans (interface thread calls ended)
-  "Watch THREAD, the thread of the plans, until the semaphore ENDED is signalled at its end. Warn of
-plans that block THREAD, and end such plans if their end was requested. CALLS tells which users'
-code THREAD is running."
+  "Watch THREAD, the plans' thread, until the semaphore ENDED is signalled at its end. Warn of plans
+that block it, and end them if this was requested. CALLS tells which users' code it runs."
   (loop with earlier = nil and stuck = 1 and busy = 1
         until (wait-on-semaphore ended (/ (hog-seconds) 2))
         do (let ((sample (take-thread-sample interface thread)))

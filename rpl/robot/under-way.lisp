@@ -116,8 +116,7 @@ time is carried out first, and a command in the background goes on."
                             (plain-settings settings)))))))
 
 (defun post-answer (interface action err results)
-  "Post the answer to ACTION, with ERR and RESULTS, to the plans of INTERFACE. The simulator's
-thread calls this function."
+  "In the simulator's thread, post the answer to ACTION, ERR and RESULTS, to INTERFACE's plans."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (action-outcome action) (action-resource action) err results))

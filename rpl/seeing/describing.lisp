@@ -10,9 +10,8 @@
 
 (addition task-stack)
 (defun task-stack (task)
-  "Return a list of the expressions that TASK is evaluating, innermost first: one expression for
-each call of a plan in progress. Expressions of the tasks around TASK are left out. Return () when
-TASK is over."
+  "Return a list of the expressions that TASK is evaluating, innermost first: one for each call of a
+plan in progress. Those of the tasks around TASK are left out. Return () when TASK is over."
   (check-argument task-stack task (task-p task) "a task, as begin-plan returns")
   (note-task-seen task)
   (forms-under-way (task-frame task)))

@@ -48,9 +48,8 @@
 (defun trace-of (which &key event form runner)
   "Return a list of the trace entries of WHICH and its parts, in order. WHICH is a task, which may
 be over, or its number; NIL for all. If EVENT is an event or a list of events, return only entries
-of these events. If FORM names an operator, return only entries at calls of that operator. RUNNER is
-a plan runner, by default the runner of the task, or else the runner in use. Signals MISUSE if no
-trace was kept."
+of these. If FORM names an operator, return only entries at its calls. RUNNER is a plan runner, by
+default the task's, or else the one in use. Signals MISUSE if no trace was kept."
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (let ((member-p (if number (descendant-test number trace) (constantly t))))
       (loop for entry across trace
@@ -252,9 +251,8 @@ expression, by default a short text."
   (setf (bar-parts bar) (append (call-bars bar (bar-commands bar)) (bar-parts bar))))
 
 (defun bars (trace &optional now)
-  "Return the bars of the plans, top-level tasks, in TRACE, in order of their start. The bars of
-other tasks are parts of these bars. What has not ended ends at the tick NOW, by default the last
-tick of TRACE."
+  "Return the bars of the plans, top-level tasks, in TRACE, in order of start. The bars of other
+tasks are parts of these. What has not ended ends at the tick NOW, by default TRACE's last."
   (let ((bars (make-hash-table)) (commands (make-hash-table :test 'eq)) (roots '()) (last 0))
     (loop for entry across trace
           for bar = (gethash (trace-entry-task entry) bars)

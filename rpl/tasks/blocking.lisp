@@ -103,8 +103,7 @@ itself, innermost first. Leave out parts that were stopped before."
       (setf (runner-mask runner) (logior +interrupt+ (runner-mask runner))))))
 
 (defun block-task (task &optional suspension)
-  "Block TASK, so that it does not run. Blocks are counted. If SUSPENSION is true, the status of
-TASK is shown as suspended."
+  "Keep TASK from running. Blocks are counted. With SUSPENSION, its status is shown as suspended."
   (let ((blocked (blocked-p task)))
     (incf (task-blocked task))
     (when suspension (incf (task-suspensions task)))

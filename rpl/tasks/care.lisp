@@ -123,8 +123,7 @@ the failure as steps that take as long, so that a plan that only fails uses up i
           (:no-error (value) (when value (funcall (watcher-wake watcher) watcher value nil))))))))
 
 (defun finish-ending (task)
-  "Finish the end of TASK, if TASK was about to evaporate or otherwise end after its parts, and has
-no more parts."
+  "Finish the end of TASK if it was to evaporate or otherwise end after its parts and none is left."
   (when (and (eq :waiting (task-state task)) (null (task-newest-child task)))
     (cond ((eq :evaporate (task-signal task)) (evaporate-now task))
           ((task-signal task) (make-ready task)))))
@@ -275,8 +274,7 @@ the trouble it met, and whether the step may have stopped inside the simulator's
                 anywhere-p)))))
 
 (defun call-handling-trouble (runner function)
-  "Call FUNCTION with RUNNER and return its value. If the step of a task met trouble, end or fail
-that task and return NIL."
+  "Return FUNCTION's value for RUNNER, or end or fail a task whose step met trouble and return NIL."
   (let ((outcome nil) (result nil) (anywhere-p nil))
     (unwind-protect
          (setf (values outcome result anywhere-p) (call-to-outcome runner function))

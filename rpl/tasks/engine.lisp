@@ -83,9 +83,8 @@ Return :budget when the steps of the reaction are used up, or when all tasks sto
             (t (return :idle))))))
 
 (defun run-round (runner)
-  "Run the ready tasks of RUNNER for one round, even if some of them meet trouble. Return as
-RUN-READY does. If the budget of a tick ends during a round, the round goes on in the next tick, so
-that no task loses its turn."
+  "Run the ready tasks of RUNNER for one round, even if some meet trouble. Return as RUN-READY does.
+If a tick's budget ends during a round, the next tick continues it, so no task loses its turn."
   (unless (shiftf (runner-broken-off-p runner) nil)
     (incf (runner-round runner)))
   (let ((outcome (loop thereis (call-handling-trouble runner #'run-ready))))
@@ -225,8 +224,7 @@ abandoned, with a warning for each. No task is left. Charges end, and posts are 
       t)))
 
 (defun plan-deadlocked-p (runner)
-  "True if tasks of RUNNER wait and nothing can wake them: RUNNER has no timer, and no post is
-possible."
+  "True if tasks of RUNNER wait and nothing can wake them: there is no timer and no possible post."
   (and (runner-roots runner)
        (runner-idle-p runner)
        (null (next-wake-time runner))
@@ -251,8 +249,7 @@ possible."
 ;;;; Plans without a robot, in virtual time
 
 (defun run-until-over (runner task limit)
-  "Run the plans of RUNNER until TASK is over. Return the state of TASK; or :deadlock; or :limit if
-the tick LIMIT is passed."
+  "Run RUNNER's plans until TASK is over. Return its state, :deadlock or :limit past tick LIMIT."
   (loop
     (react-to-all runner)
     (let ((wake (next-wake-time runner))

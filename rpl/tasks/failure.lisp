@@ -108,10 +108,9 @@ the report signals an error, return the type of FAILURE."
 
 (public fail)
 (defun fail (&rest arguments)
-  "Make the task fail. ARGUMENTS are nothing; or a condition; or a class and a property list of data
-or initargs. The word :class may stand before the class. A class is a name, or a condition class
-that inherits from PLAN-FAILURE (manual D.2). The failure propagates to the innermost construct that
-handles it."
+  "Make the task fail. ARGUMENTS are nothing, a condition, or a class and a property list of data or
+initargs. The class may follow the word :class. A class is a name, or a subclass of PLAN-FAILURE
+(manual D.2). The failure propagates to the innermost construct that handles it."
   (error (make-failure arguments)))
 
 (defun failure-matches-p (failure type)

@@ -43,8 +43,7 @@ the running task wait until then."
                    (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
 
 (defun wait-for-delivery (task frame value)
-  "If TASK must deliver a notice first, make TASK wait, and return true. TASK will continue with
-FRAME and VALUE."
+  "If TASK must deliver a notice first, return true; it waits, then continues with FRAME and VALUE."
   (let ((notice (find task (runner-notices (task-runner task)) :key #'notice-sender)))
     (when notice
       (park task notice)

@@ -276,9 +276,8 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
                  (mapcar #'task-label blocked)))))
 
 (defun warn-of-outside-waits (runner)
-  "Queue a warning, with advice. The tasks of RUNNER wait for events, and neither these tasks nor
-the simulator can cause the events. Only calls from outside can. A thread waits for the end of one
-of these tasks."
+  "Queue a warning, with advice. The tasks of RUNNER wait for events that neither they nor the
+simulator can cause. Only calls from outside can. A thread waits for the end of one of these tasks."
   (let ((tasks (mapcan #'waiting-parts (plan-runner-tasks runner))))
     (queue-notable-warning "At tick " (runner-tick runner)
                            " all plans wait for events that neither the robot nor time will cause. "

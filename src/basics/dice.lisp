@@ -91,8 +91,7 @@ WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
 
 (addition roll-between)
 (defun roll-between (low high dice)
-  "Return a double-float uniform in [LOW, HIGH). Signals WRONG-ARGUMENT unless LOW and HIGH are
-numbers from -1e15 to 1e15."
+  "Return a double-float uniform in [LOW, HIGH), numbers from -1e15 to 1e15 (else WRONG-ARGUMENT)."
   (check-argument roll-between low (bounded-number-p low) "a number from -1e15 to 1e15")
   (check-argument roll-between high (bounded-number-p high) "a number from -1e15 to 1e15")
   (let ((low (double low)) (high (double high)))
@@ -151,9 +150,8 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
 contents. Return DIGEST."))
 
 (defun digest-add (digest datum)
-  "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by their
-elements. All functions count as equal. Other objects are added by DIGEST-ADD-IDENTITY. Return
-DIGEST."
+  "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by
+elements. All functions count as equal. DIGEST-ADD-IDENTITY adds other objects. Return DIGEST."
   (declare #.*hot* (type digest digest))
   (typecase datum
     (null (digest-add-word digest (load-time-value (name-hash nil))))

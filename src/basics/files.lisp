@@ -101,9 +101,8 @@ an error if the path cannot name a regular file, or if the file is write-protect
 (defun call-replacing-file (function file &key (external-format :utf-8) (check #'identity))
   "Call FUNCTION with a stream to a new UTF-8 file, which replaces FILE atomically when FUNCTION has
 returned. If anything fails, FILE is unchanged. Return the truename of FILE. FILE keeps its
-permissions. Printer variables have their standard values. With the EXTERNAL-FORMAT :LATIN-1 each
-character is an octet. CHECK is called with the path of the complete new file; if CHECK signals an
-error, FILE is unchanged."
+permissions. Printer variables have standard values. With EXTERNAL-FORMAT :LATIN-1, each character
+is an octet. CHECK is called with the path of the complete new file and may signal errors."
   (let* ((path (path-to-write file)) (directory (uiop:pathname-directory-pathname path)))
     (remove-abandoned-files directory)
     ;; The new file's name is random. The caller's random state must not change.

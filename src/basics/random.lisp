@@ -165,8 +165,7 @@ since it was seeded, list only the seed; else list the position of the next word
 ;;; or, after the last word, the words.
 
 (defstruct (random-snapshot (:constructor make-random-snapshot (position words)) (:copier nil))
-  "A snapshot of a random state: the POSITION of its next word, and its WORDS, in which the position
-is outdated."
+  "A snapshot of a random state: its next word's POSITION and its WORDS, with an outdated position."
   (position 0 :type (unsigned-byte 32) :read-only t)
   (words nil :type (simple-array (unsigned-byte 32) (*)) :read-only t))
 

@@ -219,8 +219,7 @@ the text says so."
   (or (eq a b) (%same-name-p a b)))
 
 (defun value-equal (a b)
-  "True if A and B are the same attribute value: symbols of the same name, equal numbers, or lists
-of such values (reading 38)."
+  "True if A and B are equal attribute values: symbols by name, numbers, or lists (reading 38)."
   (cond ((eq a b) t)
         ((and (symbolp a) (symbolp b)) (and a b (same-name-p a b)))
         ((and (numberp a) (numberp b)) (= a b))

@@ -39,10 +39,9 @@
 smaller.")
 
 (defstruct preferences
-  "The user's preferences for the layout of a window. DETAILS-WIDTH, PLAN-WIDTH and
-TRANSCRIPT-HEIGHT are in pixels, or NIL for what suits the window. FOLDED lists sections that show
-only their title. MAGNIFICATION is the number of screen pixels for one pixel of the window, or NIL
-for what suits the screen."
+  "The user's layout preferences for a window. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are
+in pixels, or NIL for what suits the window. FOLDED lists sections that show only their title.
+MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit the screen."
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))
   (transcript-height nil :type (or null real))
@@ -149,8 +148,7 @@ sections get one of the remaining lines each, and the last one gets the remainin
         (list section left (+ top +title-height+) width (max 0 height))))
 
 (defun section-column-places (sections needs folded left top width height)
-  "Return the places of SECTIONS in a column. NEEDS is a function from a section to the height that
-it needs, in pixels."
+  "Return the places of SECTIONS in a column. NEEDS returns the height of a section in pixels."
   (let* ((open (set-difference sections folded))
          (room (- height (* +title-height+ (length sections))))
          (shares (share-height (loop for section in sections

@@ -99,9 +99,8 @@ NIL if there is no text. Signals MISUSE if the text does not arrive or is too lo
 ;;; Holding.
 
 (defstruct (offered-text (:constructor make-offered-text (octets)) (:copier nil))
-  "A text that is offered to other programs, as a string of OCTETS. TRANSFERS are lists (window
-property start), one for each program that receives the text in pieces. START is where the next
-piece begins in OCTETS."
+  "A text offered to other programs, as a string of OCTETS. TRANSFERS are lists (window property
+start), one for each program that receives it in pieces. START is where the next piece begins."
   (octets "" :type string :read-only t)
   (selections '() :type list)
   (transfers '() :type list))

@@ -45,8 +45,7 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
         (setf *window-states* (acons name state (remove name *window-states* :key #'first)))))))
 
 (defun restore-settings (window)
-  "Give the new WINDOW the settings of the window that was closed last, and the state of the last
-window of its robot."
+  "Give the new WINDOW the last closed window's settings and the state of its robot's last window."
   (destructuring-bind (settings state)
       (with-lock (*last-settings-lock*)
         (list *last-settings* (rest (assoc (shown-robot-name window) *window-states*))))
@@ -61,8 +60,7 @@ window of its robot."
 
 ;;;; Coming and going
 
-;;; Each window has a thread. Any error in it, such as the loss of the X server, closes only this
-;;; window, with a warning.
+;;; An error in a window's thread, even losing the X server, only closes the window, with a warning.
 
 (defvar *windows* '() "The windows that are open.")
 (defvar *windows-lock* (make-lock "windows"))

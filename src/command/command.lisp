@@ -37,8 +37,7 @@
   (occupies nil (or null symbol)
             "a function that maps the resource to what the command occupies instead, or NIL")
   (parameters '() list
-              "the specifications of the command's arguments, without resource and
-continuation" :addition)
+              "the argument specifications, without resource and continuation" :addition)
   (results '() list "the specifications of the further arguments of the continuation" :addition)
   (errors '() list "the command's own error codes; any can also end with :INTERRUPT" :addition)
   (expected '() list
@@ -92,10 +91,9 @@ type), a list of its parameters (variable type text), and its sentence. Signals 
         (apply name resource (append arguments '(nil)))))
     name))
 
-;;; An operation has the name of a function that continues it, its step. A saved file may name
-;;; steps, but no other function. Our own steps trust their arguments, so DEFINE-STEP states what
-;;; these must be. A step passed to GO-ON in a user's program belongs to a user's command, which
-;;; CALL-USERS-STEP calls.
+;;; An operation names the function that continues it, its step. A saved file may name steps, but no
+;;; other function. Our own steps trust their arguments, so DEFINE-STEP states what these must be.
+;;; Users' commands pass their own steps to GO-ON; CALL-USERS-STEP calls them.
 
 (defun register-step (step fits-p)
   "Make the function STEP a step of all operations for which the predicate FITS-P is true. If FITS-P
@@ -104,16 +102,14 @@ is :GUARDED, make STEP a step of all users' commands."
   step)
 
 (defmacro define-step (name (operation needs) documentation &body body)
-  "Define the function NAME, a step of OPERATION, which runs BODY. The step relies on the form
-NEEDS, such as (robot-p (operation-resource operation)). An operation that was read from a file is
-refused if NEEDS is false."
+  "Define the function NAME, a step of OPERATION that runs BODY. It relies on the form NEEDS, such
+as (robot-p (operation-resource operation)). An operation from a file is refused if NEEDS is false."
   `(progn
      (register-step ',name (lambda (,operation) (declare (ignorable ,operation)) ,needs))
      (defun ,name (,operation) ,documentation ,@body)))
 
 (defun check-step (step)
-  "Return STEP, an argument of GO-ON. Signals an error if code of the simulator passes a STEP that
-DEFINE-STEP has not defined."
+  "Return GO-ON's argument STEP. Signals an error if simulator code passes it without DEFINE-STEP."
   (cond ((get step 'step) step)
         (*loading-simulator-p* (error "~S is not defined by DEFINE-STEP" step))
         (t (register-step step :guarded))))

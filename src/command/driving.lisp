@@ -107,8 +107,7 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
      (:errors (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot stopped"))
-    "Drive ROBOT straight ahead for METRES, at its current speed. ROBOT-GO-FORWARD drives for a
-number of ticks."
+    "Drive ROBOT straight ahead for METRES at its current speed. ROBOT-GO-FORWARD drives for ticks."
   (setf (operation-left operation) (double metres))
   (begin-movement robot)
   (go-on-now operation 'drive-the-rest))
@@ -147,8 +146,7 @@ number of ticks."
     ()
     ((:family :moving) (:section "3.5") (:delay 1) (:traits :stops)
      (:report () "Robot stopped"))
-    "Stop ROBOT. A driving robot coasts for BRAKING* ticks first. Another ROBOT-STOP does not
-prolong the coasting."
+    "Stop ROBOT. A driving robot coasts for BRAKING* ticks first; another ROBOT-STOP adds none."
   (when (zerop (operation-left operation))
     (setf (operation-left operation) (double braking*)))
   (cond ((and (operation-subject operation) (driving-p robot) (plusp braking*))

@@ -4,9 +4,8 @@
 
 (export '(failure-code-p))
 
-;;; An error code is only a word. This file has a sentence and a remedy for each that several
-;;; commands share. Commands have their own messages, too, and explain their own codes (see
-;;; DEFINE-COMMAND).
+;;; An error code is only a word. Here are a sentence and a remedy for each that several commands
+;;; share. Commands have their own messages, and explain their own codes (see DEFINE-COMMAND).
 
 (defparameter *error-code-explanations*
   '((:interrupt
@@ -16,8 +15,7 @@ robot) returns what the robot is doing, and for whom.")
     (:failed
      "The command did not succeed: by chance, because no method fits the things, because a
 designator was not local, or because of an error in its code, which an error message reports."
-     "Try again. If the manipulation never works, (describe (find-manipulation 'name)) shows which
-things its methods are for.")
+     "Retry. If it never works, (describe (find-manipulation 'name)) shows the things it takes.")
     ;; Moving.
     (:robot-blocked
      "A wall, or a thing that blocks movement, is in the robot's way. The robot has stopped in front
@@ -52,8 +50,7 @@ min-turn-angle* now."
     (:already-tracking "The camera tracks something, and can do nothing else meanwhile."
      "End the track with camera-untrack, or use another camera.")
     (:not-tracking "The camera tracks nothing, or has lost what it tracked."
-     "Find the thing with camera-get-object-designator, and track its designator with
-camera-track.")
+     "Find the thing with camera-get-object-designator; track its designator with camera-track.")
     (:designator-not-found
      "The camera found no such thing or place. The thing or place may be out of the field of view,
 hidden, nearer or farther away than the search asked for, or overlooked by chance."
@@ -75,8 +72,7 @@ put into a container or out of it."
     (:lost-track
      "The camera cannot see the thing any more: the thing was hidden, moved away, left the field of
 view, is next to the robot now, or never existed."
-     "Search for the thing again; if the robot has arrived at the thing, search for a :local
-designator.")
+     "Search for the thing again; if the robot is there, search for a :local designator.")
     ;; Handling.
     (:hand-grasping "The hand holds something already."
      "Drop the thing with hand-ungrasp, or use another hand.")
@@ -121,8 +117,7 @@ container."
 enter."
      "Track the container itself with camera-track.")
     (:not-inside "The hand or camera is not inside of anything." "Go on."))
-  "Lists (code meaning remedy) for the simulator's own commands: an error code, a sentence, and a
-sentence or an empty string.")
+  "Lists (code meaning remedy) for the simulator's own commands: sentences, or \"\" for no remedy.")
 
 (mapc #'note-error-code (mapcar #'first *error-code-explanations*))
 
@@ -147,7 +142,6 @@ the simulator nor a command explains CODE."
     (and remedy (string/= "" remedy) (one-line remedy))))
 
 (defun failure-code-p (code)
-  "True if CODE, an error code or NIL, is worth reporting as a failure. The codes :INTERRUPT and
-:DESIGNATOR-NOT-FOUND do not count, because plans often interrupt commands on purpose and search for
-things that are not there."
+  "True if CODE, an error code or NIL, is worth reporting as a failure. :DESIGNATOR-NOT-FOUND and
+:INTERRUPT do not count: plans often search for absent things and interrupt commands on purpose."
   (not (member code '(nil :interrupt :designator-not-found))))

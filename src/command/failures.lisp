@@ -84,10 +84,9 @@ command. A newer command always interrupts an older command."
 
 (addition last-interruption)
 (defun last-interruption (resource)
-  "Return the last interruption of a command of RESOURCE, a robot or a part, as a list (what asker
-by-what by-asker tick): the names of the interrupted and the interrupting command, each with a
-string that says who issued it, and the tick. THINK counts as a command of the robot. Return NIL if
-no command was interrupted."
+  "Return the last interruption of a command of RESOURCE, a robot or a part, or NIL: a list (what
+asker by-what by-asker tick) with the names of the interrupted and the interrupting command, each
+with a string that says who issued it, and the tick. THINK counts as a command of the robot."
   (check-resource 'last-interruption resource)
   (let ((interruption (newest-interruption-record resource)))
     (when interruption

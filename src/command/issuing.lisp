@@ -79,8 +79,7 @@ position. TOLD lists the names of the arguments."
 ;;; Two commands without a tick between them.
 
 (defun takes-time-p (command)
-  "True if COMMAND takes time, so that a newer command interrupts it. Commands that only stop
-something do not count."
+  "True if COMMAND takes time and newer ones interrupt it; false if it only stops something."
   (not (or (command-instant-p command) (trait-p :stops command))))
 
 (defun from-program-p ()
@@ -142,8 +141,7 @@ program has just issued without a continuation: in this tick or, in a live run, 
 
 (defun warn-if-repeating (command resource arguments timeline)
   "Warn once if a program in a headless run issues COMMAND, a relative turn of RESOURCE by
-ARGUMENTS, again while the same turn is in progress without a continuation. The turn then starts
-over."
+ARGUMENTS, again while the same turn is in progress without a continuation. It then starts over."
   (let ((before (resource-event resource)))
     (when (and (operation-p before)
                (eq command (operation-command before))

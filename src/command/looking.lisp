@@ -141,9 +141,8 @@ error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
      (:errors (:already-tracking #'already-tracking-text)
               (:designator-not-found (operation-formatter "~A found no such object")))
      (:report (designator) (found-message operation (list designator))))
-    "Look with CAMERA for an object that fits a description. Of several objects, one is chosen at
-random. The error code :DESIGNATOR-NOT-FOUND means that the camera found no object; this is no
-failure."
+    "Look with CAMERA for an object that fits a description. Of several, one is chosen at random.
+The error code :DESIGNATOR-NOT-FOUND means that the camera found no object; this is no failure."
   (search-for-things operation camera type specification nil))
 
 (define-command camera-get-all-object-designators

@@ -4,8 +4,7 @@
 
 (export '(manipulation-command-p ensure-manipulation-command))
 
-;;; Objects are given as designators. An invalid, false or non-local one, or one of another robot,
-;;; designates nothing.
+;;; Designators give the objects. Those invalid, false, non-local or of other robots give none.
 
 (defun designated-local-thing (designator resource)
   "Return the local thing that DESIGNATOR denotes for the robot of RESOURCE, or NIL (reading 175)."

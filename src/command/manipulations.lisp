@@ -5,9 +5,8 @@
 (export '(define-manipulation method-signature manipulation-method))
 
 ;;; A manipulation is a name with methods, the newest first. When it begins, it chooses the first
-;;; method that takes the arguments and fits the designated things. The method must still fit when
-;;; its delay has passed. Then its body runs as a command's operation on the value of the method's
-;;; :BY parameter.
+;;; method that takes the arguments and fits the designated things. The method must still fit after
+;;; its delay. Then its body runs as a command's operation on the value of its :BY parameter.
 ;;;
 ;;; A method replaces one with the same parameter list. When a changed file is loaded again, the
 ;;; methods that it no longer contains are removed, so a method with edited parameters leaves no old

@@ -10,9 +10,8 @@
     ()
     ((:family :thinking) (:section "1.2") (:delay 1) (:prefix "think") (:occupies robot-mind)
      (:report () "Robot has thought"))
-    "Make ROBOT think. If the run charges for thinking, THINK takes TICKS, at least 1; otherwise it
-ends with the next tick. The robot's body and parts continue meanwhile. A newer THINK interrupts an
-older THINK."
+    "Make ROBOT think. If the run charges for thinking, it takes TICKS, at least 1; else it ends
+with the next tick. The robot's body and parts continue. A newer THINK interrupts an older one."
   (if (and (> ticks 1) (thinking-charged-p (operation-timeline operation)))
       (go-on operation 'succeed (1- ticks))
       (succeed operation)))

@@ -45,8 +45,7 @@ range, else NIL (reading 91)."
                (limit-error-formatter "Turn angle too high. Set to the maximum, ~,2F"
                                       'max-turn-angle*)))
      (:report (angle) (format nil "Turn angle set to ~,2F" angle)))
-    "Set how far ROBOT turns in a tick, limited to the range from MIN-TURN-ANGLE* to
-MAX-TURN-ANGLE*."
+    "Set how far ROBOT turns in a tick, at least MIN-TURN-ANGLE* and at most MAX-TURN-ANGLE*."
   (multiple-value-bind (angle outside) (limit-value angle min-turn-angle* max-turn-angle*)
     (setf (robot-turn-angle robot) angle)
     (finish operation
@@ -61,8 +60,7 @@ MAX-TURN-ANGLE*."
 0.")
 
 (defun turn-step (robot left)
-  "Turn ROBOT for a tick, by LEFT at most. Return the remaining angle, and the odometry's reading of
-the step (reading 99)."
+  "Turn ROBOT by LEFT at most in a tick. Return the remainder and the odometry's step (reading 99)."
   (let* ((most (* (robot-turn-angle-now robot) (double tick-quantum*)))
          (step (clamp left (- most) most)))
     (turn-tick robot step)

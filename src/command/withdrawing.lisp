@@ -11,8 +11,7 @@
 (define-kind (withdrawal :include request
                          :constructor (make-withdrawal (continuation arguments
                                                         &aux (operator 'withdraw-command))))
-    "A request to interrupt a command if it is still in progress. The first argument is the
-command's resource."
+    "A request to interrupt a command still in progress. The first argument is its resource."
   (:fixed
    (continuation nil t "the command's continuation; NIL if the second argument says where the
 command is: :COMMAND, :TRACK or NIL" :export)))

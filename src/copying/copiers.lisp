@@ -9,8 +9,7 @@
   "An object that copies a run."
   (table (make-hash-table :test 'eq :size 500) hash-table "the copies by their originals" :writable)
   (work (make-array 512) simple-vector
-        "the copies whose references must still be replaced, each followed by the numbers of the
-slots to replace" :writable)
+        "the copies with references to replace, each followed by the slots' numbers" :writable)
   (fill 0 fixnum :writable)
   (tables '() list "the hash tables to fill when everything else is copied" :writable)
   (holder nil t "the copy whose references are being replaced" :writable)
@@ -59,8 +58,7 @@ for the copy and true, or NIL and false" :writable)
   "A list of one element, the list of the copiers that are not in use.")
 
 (defconstant +reusable-copier-limit+ 20000
-  "The largest number of objects that a copier may have copied if it
-is to be reused.")
+  "The largest number of objects that a copier may have copied if it is to be reused.")
 
 (defun take-copier ()
   (loop for copiers = (car *idle-copiers*)

@@ -114,9 +114,8 @@ closures, structures or instances."
 
 ;;;; Saving and restoring
 
-;;; A file has what a restored object needs: of a kind, the slots with the roles :FIXED, :STATE and
-;;; :MEMORY; slots that are :SCRATCH or a :LINK start as in a new object. Of a structure without a
-;;; kind it has all slots.
+;;; A file has what a restored object needs: of a kind, the slots with roles :FIXED, :STATE and
+;;; :MEMORY; :SCRATCH and :LINK slots start as in a new object. Of other structures it has all.
 
 (defun saved-slot-p (slot)
   "True if saved runs contain SLOT, an element of FIELDS-OF-TYPE."

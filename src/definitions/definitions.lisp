@@ -53,8 +53,7 @@ string after the name; or NIL."
     (definition-title (first form) (second form))))
 
 (defun clause-location (clause)
-  "Return the file and line of CLAUSE, a part of the current definition, as a text such as
-\"yard.lisp, line 7\", or NIL."
+  "Return the place of CLAUSE in the current definition, such as \"yard.lisp, line 7\", or NIL."
   (let ((source (if *definition* (current-source) (source-of-current-form))))
     (when source
       (multiple-value-bind (line ordinal)
@@ -226,9 +225,8 @@ return a list with a form that signals the error later. (The compiler would chan
     (call-with-definition-restarts function #'identity)))
 
 (defun expand-definition (form environment function)
-  "Return the expansion of the definition FORM, (operator name ...), in ENVIRONMENT. FUNCTION
-returns two lists of forms: those that perform the definition, and those to evaluate before it. The
-expansion returns the name."
+  "Expand the definition FORM, (operator name ...), in ENVIRONMENT. FUNCTION returns two lists:
+forms that perform the definition, and forms to evaluate before it. The expansion returns the name."
   (call-with-definition
    form
    (lambda ()

@@ -12,8 +12,7 @@
 ;;; bounded: beyond *MESSAGE-LIMIT* the oldest are dropped and counted.
 
 (defparameter *message-limit* 1000
-  "The number of messages that a queue holds before it drops the oldest (manual 3.7). The limit is
-an addition.")
+  "The number of messages that a queue holds before it drops the oldest (manual 3.7; an addition).")
 
 (public flush-all-errors*)
 (defvar flush-all-errors* nil
@@ -39,8 +38,7 @@ an addition.")
   (kind :message (member :error :warning :message) ":ERROR, :WARNING or :MESSAGE" :export)
   (items '() list "the items that the message is made of" :export)
   (asker *request-origin* t
-         "the origin of the request that the message is about, for example the name of a plan; or
-NIL" :export)
+         "the origin of the message's request, such as a plan's name; or NIL" :export)
   (robot *reported-robot* t
          "the name of the robot whose command the message reports, or NIL" :export)
   ;; Several runs may share a queue.
@@ -233,8 +231,7 @@ warnings with *WARNING* -> (manual E). If STREAM is NIL, return the line as a st
 (defun error-display (&optional (stream *standard-output*))
   "Write all queued messages to STREAM, the oldest first, and flush the queue. A STREAM of NIL or T
 means standard output. If FLUSH-ALL-ERRORS* is true, flush the queue without writing. Return nothing
-(manual 3.7). Signals WRONG-ARGUMENT, and keeps the messages, if STREAM is not a stream. See reading
-207."
+(manual 3.7, reading 207). Signals WRONG-ARGUMENT, and keeps the messages, if STREAM is no stream."
   (check-argument error-display stream (typep stream '(or stream boolean)) "a stream")
   (let ((messages (take-messages))
         (stream (if (streamp stream) stream *standard-output*)))

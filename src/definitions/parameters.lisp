@@ -255,9 +255,8 @@ designators of things, but no parameter for them." :addition :digested)
       "How long opening or closing a storage bin takes."))
     ("Time"
      (tick-quantum* 1 "ticks" :setting (real 1 1000000)
-      "How many of the manual's ticks one tick represents. Motion, drift and chances for each tick
-are multiplied by this number; actions that take time take fewer ticks. The manual, in chapter 1.2,
-only proposes to skip time."
+      "How many of the manual's ticks one tick represents. Motion, drift and chances per tick are
+multiplied by it; actions that take time take fewer ticks. Manual 1.2 only proposes to skip time."
        :addition :digested))))
 
 (defun per-tick-probability (probability)

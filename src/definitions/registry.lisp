@@ -152,9 +152,8 @@ because the definition is restored.")
   (not (equal *simulator-source* (entry-source entry))))
 
 (defun entries-including (new old before registry)
-  "Return the entries of REGISTRY with the entry NEW added. If BEFORE, an object, is given, NEW
-precedes its entry. Else NEW replaces the entry OLD, unless an entry of the same name follows OLD.
-Else NEW is the last."
+  "Return the entries of REGISTRY and the entry NEW: before the entry of the object BEFORE, if
+given; else in place of the entry OLD, unless an entry of the same name follows it; else last."
   (let* ((entries (registry-entries registry)) (others (remove old entries)))
     (cond (before (let ((tail (member before others :key #'entry-object)))
                     (append (ldiff others tail) (list new) tail)))
@@ -195,9 +194,8 @@ NAME is a symbol of Common Lisp or of the simulator."
   "A function that is called with each object that this thread defines, or NIL.")
 
 (defun replace-entry (old new registry before value)
-  "Add the entry NEW to REGISTRY, in place of the entry OLD or before the object BEFORE. If NEW
-has a variable, set it to VALUE. Return true; but if another thread has replaced OLD meanwhile, do
-nothing and return NIL."
+  "Add the entry NEW to REGISTRY, in place of the entry OLD or before the object BEFORE. Set NEW's
+variable, if any, to VALUE. Return true; if another thread has replaced OLD, only return NIL."
   (with-lock (*registries-lock*)
     (when (eq old (entry-to-replace (entry-name new) registry))
       (set-entries registry (entries-including new old before registry))

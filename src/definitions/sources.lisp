@@ -163,8 +163,7 @@ than once, prefer the first position after that of the last search."
           (look forms)))))
 
 (defun word-position (text form start end)
-  "Return the position of FORM, if it is an atom, or of its first element, in TEXT between START and
-END; or NIL."
+  "Return where FORM, or the first element of a list FORM, is in TEXT from START to END; or NIL."
   (let ((word (if (consp form) (first form) form)))
     (and word
          (or (symbolp word) (realp word))

@@ -21,8 +21,7 @@ if PART is NIL. Call WATCH with the simulation at the beginning and after each t
 FUNCTION are signalled after the replay."
   (let ((last nil) (queue *message-queue*) (trouble nil))
     (labels ((draw ()
-               ;; Errors in drawing are signalled here. In the replayed run, errors of an observer
-               ;; would be messages.
+               ;; Errors in drawing are signalled here; an observer's would be messages.
                (let ((*message-queue* queue))
                  (handler-case (funcall function (snapshot-of-part last part 'save-animation))
                    (error (condition) (setf trouble condition)))))
