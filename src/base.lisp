@@ -1,7 +1,6 @@
 ;;;; base.lisp -- the package in which programs find what the lowest four layers have.
 
 (uiop:define-package :ars-magna.base
-  (:documentation "Names for programs that add kinds of objects, parameters or commands. This
-package exports all names of the four lowest packages. The simulator's own layers use those four
-packages directly.")
+  (:documentation "Names for programs that add kinds of objects, parameters or commands. It exports
+all names of the four lowest packages. The simulator's own layers use these directly.")
   (:use-reexport :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying))

@@ -1,8 +1,7 @@
 ;;;; faces.lisp -- the packages that users see: ARS, NISP and ARS-USER.
 
 (defpackage :ars-magna.faces
-  (:documentation "Defines the packages for users, ARS, NISP and ARS-USER, which export symbols of
-all layers.")
+  (:documentation "Defines ARS, NISP and ARS-USER, which export symbols of all layers to users.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:export #:cli #:define-user-package #:join-editors #:inspect-in-editor #:editor-server))
 

@@ -147,7 +147,7 @@
                ((wall (0 a) (1 1) bricks 1) . "numbers")
                ((wall (0 0) (1 1) "bricks" 1) . "substance")
                ((rect (0 0) (1 1) bricks 1 2) . "(rect (x0 y0)")
-               ((rect (0 0) (1 1) bricks 1 2 3 4 5) . "three parameters more")
+               ((rect (0 0) (1 1) bricks 1 2 3 4 5) . "[three more]")
                ((circle (0 0) bricks 1) . "(circle (x y)")
                ((circle (0 0) -1 bricks 1) . "radius not below 0")
                ((circle (0 0) 1 bricks 1 2) . "(circle (x y)")

@@ -25,8 +25,7 @@
       nil))
 
 (def-interp-proc drive-by (distance)
-  "Drive DISTANCE metres straight ahead, in whole ticks, at DRIVING-SPEED* at most. Return an error
-code or NIL."
+  "Drive DISTANCE metres ahead in whole ticks, up to DRIVING-SPEED*. Return an error code or NIL."
   (let ((ticks (max 1 (ceiling distance driving-speed*))))
     (rpl-robot-set-speed (/ distance ticks))
     (outcome (rpl-robot-go-forward ticks) robot-stopped* robot-movement-error*)))
@@ -200,8 +199,7 @@ for a thing to move away; every third time turn and drive off."
 (def-interp-proc travel-to (me point &key (tolerance 1) (patience 40) (camera (widest-camera)))
   "Drive the robot of the reckoning ME to POINT, a list (x y), to within TOLERANCE metres, through
 doorways and round obstacles. Return the estimated position. Fails with :CANNOT-GET-THERE after
-PATIENCE obstacles or 300 steps, or at once if there is no way. Fails with WRONG-ARGUMENT if an
-argument is invalid."
+PATIENCE obstacles or 300 steps, or at once if there is no way; or with WRONG-ARGUMENT."
   (check-arguments 'travel-to
                    (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
                    (list (number-list-p point 2) "point" point "a list (x y) of numbers of metres"))
@@ -224,8 +222,7 @@ argument is invalid."
 
 (def-interp-proc patrol-places (points &key (rounds 1) start)
   "Visit POINTS of the map in turn, ROUNDS times. START is the robot's position, a list (x y
-heading); the default is the true position. Points that cannot be reached are left out. Return the
-number of visits."
+heading), by default the true one. Unreachable points are left out. Return the number of visits."
   (check-points 'patrol-places 'points points)
   (with-valve ((rpl-robot-valve))
     (let ((me (begin-reckoning (or start (here (rpl-robot)))))

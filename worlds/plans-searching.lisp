@@ -67,8 +67,7 @@ metres; NIL if there is no way."
 
 (def-interp-proc find-from-here (me camera description &key (candidates 3))
   "Look round for something that fits DESCRIPTION, and drive the robot of the reckoning ME to it. If
-the thing does not fit, try another thing, at most CANDIDATES in all. Return true if a thing was
-found."
+it does not fit, try another, at most CANDIDATES in all. Return true if a thing was found."
   (let ((found nil))
     (n-times candidates UNTIL found
       (let ((seen (look-round camera description)))

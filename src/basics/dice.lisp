@@ -146,8 +146,7 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
         (mix-bits (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 
 (defgeneric digest-add-identity (object digest)
-  (:documentation "Add to DIGEST the data that identify OBJECT. If no data identify OBJECT, add its
-contents. Return DIGEST."))
+  (:documentation "Add what identifies OBJECT, or else its contents, to DIGEST. Return DIGEST."))
 
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by

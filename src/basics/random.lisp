@@ -24,8 +24,7 @@
 (defconstant +first-word-index+ (1+ +position-index+))
 (defconstant +end-of-words+ 624 "The position after the last word.")
 (define-constant +mark+ #(#x6C617A79 #x64696365 #x2E2E2E2E) :test #'equalp
-  :documentation "The mark: the words after the seed in a random state whose other words are not yet
-filled.")
+  :documentation "The mark: the words after the seed in a random state that is not yet filled.")
 
 (defun mark-seeded (words seed)
   "Store SEED and the mark in WORDS, to be filled from SEED when SBCL renews the random state."

@@ -107,8 +107,7 @@ no-break spaces only if they have no other space. No-break spaces become spaces.
 ;;; A message quotes readably what is wrong, even if circular, very deep or megabytes long.
 
 (defconstant +shown-cons-limit+ 150 "The largest number of conses of a datum that a message shows.")
-(defconstant +shown-character-limit+ 200 "The largest number of characters of a text that a message
-shows.")
+(defconstant +shown-character-limit+ 200 "The largest number of characters of a text in a message.")
 
 (defstruct (omission (:constructor make-omission (text)) (:copier nil))
   "The TEXT that replaces an omitted part of a datum."
@@ -183,9 +182,8 @@ shows.")
   (let ((*print-case* :downcase)) (unqualified-text datum)))
 
 (defun safe-text (object &key (escape t) (length 500))
-  "Return OBJECT as printed by PRIN1, or by PRINC if ESCAPE is false, without package prefixes, in
-at most LENGTH characters. Deep, long and circular data are abridged. If OBJECT cannot be printed,
-the text says so."
+  "Return OBJECT as PRIN1 prints it, or PRINC unless ESCAPE, without package prefixes, in at most
+LENGTH characters. Deep, long and circular data are abridged. If printing fails, the text says so."
   (handler-case
       (let ((*print-circle* t) (*print-pretty* nil) (*print-readably* nil) (*print-escape* escape)
             (*print-length* (or *print-length* 100))

@@ -17,8 +17,7 @@
 
 (define-constant +sines+ (doubles-table 103 #'sine-row)
   :test #'equalp
-  :documentation "For each K: the sine and the cosine of K/128, each as a sum of two
-double-floats.")
+  :documentation "For each K: the sine and cosine of K/128, each a sum of two double-floats.")
 
 (defmacro with-sine-row ((sine sine-low cosine cosine-low rest size) &body body)
   "In BODY, bind the first four variables to the row of the table +SINES+ whose argument is nearest

@@ -35,8 +35,7 @@
 
 (define-constant +splitters+ '(side-splitter plan-splitter low-splitter)
   :test #'equal
-  :documentation "The bars that the user can drag to make the parts on either side larger or
-smaller.")
+  :documentation "The bars that the user can drag to resize the parts on either side.")
 
 (defstruct preferences
   "The user's layout preferences for a window. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are

@@ -21,8 +21,7 @@
 
 (define-constant +first-size+ '(1180 820)
   :test #'equal
-  :documentation "The initial width and height of a window, in pixels, if the screen has room for
-them.")
+  :documentation "A window's initial width and height in pixels, if the screen has room.")
 
 (defun screen-size (pane)
   "Return the width and height of the screen of PANE, or NIL and NIL if they are unknown."
@@ -132,8 +131,7 @@ least height of the designators.")
 (defun initial-height (section) (second (assoc section *initial-heights*)))
 
 (defgeneric needed-section-height (pane section width)
-  (:documentation "Return the height in pixels that PANE, which shows SECTION, needs if it is WIDTH
-pixels wide.")
+  (:documentation "Return the height that PANE, which shows SECTION, needs at WIDTH, in pixels.")
   (:method (pane section width)
     (declare (ignore width))
     (max (pane-extent pane) (initial-height section)))
@@ -185,8 +183,7 @@ pixels wide.")
   (:documentation "A bar between two parts of the window. The user can drag the bar."))
 
 (defgeneric drag-splitter (name preferences layout x y)
-  (:documentation "Change PREFERENCES so that the splitter called NAME moves to X, Y of the pane
-LAYOUT.")
+  (:documentation "Change PREFERENCES so that the splitter NAME moves to X, Y of LAYOUT.")
   (:method ((name (eql 'side-splitter)) preferences layout x y)
     (declare (ignore y))
     (let* ((width (pane-size layout)) (right (max 120 (- width x +splitter-width+))))

@@ -8,8 +8,7 @@
 
 (define-constant +smallest-size+ '(640 480)
   :test #'equal
-  :documentation "The width and height, in window pixels, of the smallest window in which everything
-is visible.")
+  :documentation "The least width and height, in window pixels, that show everything.")
 
 (defconstant +greatest-magnification+ 6
   "The largest magnification, in screen pixels per window pixel.")

@@ -141,8 +141,7 @@ would be cut off. Record in PANE what was painted where."
   (:method (pane button x y) (handle-click pane button x y)))
 
 (defgeneric handle-click (pane button x y)
-  (:documentation "Handle a click with the mouse BUTTON, :LEFT, :MIDDLE or :RIGHT, at X, Y of
-PANE."))
+  (:documentation "Handle a click of BUTTON (:LEFT, :MIDDLE or :RIGHT) at X, Y of PANE."))
 
 (defgeneric handle-drag (pane x y)
   (:documentation "Handle a mouse movement to X, Y of PANE during the drag (PANE-DRAG PANE).")
@@ -156,8 +155,7 @@ PANE."))
   (:documentation "Handle a movement of the mouse to X, Y of PANE without a button pressed."))
 
 (defgeneric handle-wheel (pane steps x y)
-  (:documentation "Handle a turn of the mouse wheel by STEPS at X, Y of PANE. Positive STEPS scroll
-down.")
+  (:documentation "Handle a turn of the mouse wheel by STEPS, positive for down, at X, Y of PANE.")
   (:method (pane steps x y)
     (declare (ignore x y))
     (scroll-pane pane (* steps +scroll-step+))))
@@ -215,8 +213,7 @@ visible part begins, the length of the visible part, and the length of the conte
     (values (pane-offset pane) (nth-value 1 (pane-size pane)) (pane-extent pane))))
 
 (defgeneric scroll-to (pane position)
-  (:documentation "Scroll PANE so that its visible part begins at POSITION, in the unit of
-SCROLL-STATE.")
+  (:documentation "Scroll PANE so that it shows POSITION first, in the unit of SCROLL-STATE.")
   (:method (pane position)
     (setf (pane-offset pane) (max 0 (round position)))
     (limit-offset pane)

@@ -11,8 +11,7 @@
   ((transcript :initarg :transcript :reader console-transcript)
    ;; The last line that was entered.
    (entered :initform "" :accessor console-entered))
-  (:documentation "A console that writes its output to a transcript. Another pane shows the input
-line."))
+  (:documentation "A console that writes to a transcript. Another pane shows the input line."))
 
 (defun notify-window (console)
   (funcall (transcript-news (console-transcript console))))

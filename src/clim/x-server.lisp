@@ -17,8 +17,7 @@
           return (parse-integer value :junk-allowed t)))
 
 (defgeneric screen-resolution (port)
-  (:documentation "Return the resolution in the X resources of PORT's screen, in dots per inch, or
-NIL if there is none.")
+  (:documentation "Return the dots per inch that the X resources of PORT's screen give, or NIL.")
   (:method ((port clim:basic-port)) nil)
   (:method ((port clim-clx:clx-port))
     (let ((screen (xlib:display-default-screen (clim-clx:clx-port-display port))))

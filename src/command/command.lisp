@@ -18,8 +18,7 @@
   (keyword nil keyword "the keyword that the continuation gets" :addition)
   (text "" (or string function)
         "the text of the message, a string or a function of the operation" :addition)
-  (explanation '() list "strings that say what the code means and what to try; () if the code is in
-*ERROR-CODE-EXPLANATIONS*"))
+  (explanation '() list "strings: the meaning and what to try; () if in *ERROR-CODE-EXPLANATIONS*"))
 
 (addition command-p)
 (define-record command

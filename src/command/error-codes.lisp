@@ -29,8 +29,7 @@ drive on; go-to and find-way avoid known obstacles.")
      "Give a speed from 0 to max-speed*. To drive back, turn the robot round.")
     (:too-high-speed "A speed was above max-speed*. The robot's speed is max-speed* now."
      "Give a lower speed, or set max-speed*.")
-    (:too-low-turn-angle "A turn angle was below min-turn-angle*. The robot's turn angle is
-min-turn-angle* now."
+    (:too-low-turn-angle "The turn angle was below min-turn-angle*; it is min-turn-angle* now."
      "Give a larger angle.")
     (:too-high-turn-angle
      "A turn angle was above max-turn-angle*. The robot's turn angle is max-turn-angle* now."
@@ -104,8 +103,7 @@ hand-remove and camera-remove.")
      "Take the hand or camera out with hand-remove or camera-remove.")
     (:bin-jammed "Something in the storage bin was in the way of its door."
      "Close it again.")
-    (:insufficient-capacity "The container has too little room for what the hand holds, or is no
-container."
+    (:insufficient-capacity "The container lacks room for what the hand holds, or is no container."
      "Take something out first, or use a larger container.")
     (:holding-thing "The hand holds the container, or something that the container is in."
      "Put the thing down first, or use another hand.")
@@ -113,8 +111,7 @@ container."
      "Try again; look for the container again if its designator was lost.")
     (:camera-bump "The camera missed the container, bumped into it and lost it from view."
      "Find and track the container again, and try again.")
-    (:not-tracking-destination "The camera tracks something other than the container that it is to
-enter."
+    (:not-tracking-destination "The camera tracks something other than the container to enter."
      "Track the container itself with camera-track.")
     (:not-inside "The hand or camera is not inside of anything." "Go on."))
   "Lists (code meaning remedy) for the simulator's own commands: sentences, or \"\" for no remedy.")

@@ -246,8 +246,7 @@ RIVAL if it takes no time, such as a ROBOT-SET-SPEED just before a ROBOT-GO-FORW
            (interrupt-event agenda rival))))
 
 (defgeneric record-interrupted-operation (name operation rival)
-  (:documentation "Record in OPERATION, an operation of the command NAME, that it interrupts the
-operation RIVAL.")
+  (:documentation "Record in OPERATION, of the command NAME, that it interrupts RIVAL.")
   (:method (name operation rival)
     (declare (ignore name))
     (when (body-begun-p rival)

@@ -56,8 +56,7 @@ range, else NIL (reading 91)."
 ;;; Turning.
 
 (define-constant +facing+ 1d-12
-  :documentation "Remaining angles below this limit, in radians, are rounding errors and count as
-0.")
+  :documentation "Remaining angles below this, in radians, are rounding errors and count as 0.")
 
 (defun turn-step (robot left)
   "Turn ROBOT by LEFT at most in a tick. Return the remainder and the odometry's step (reading 99)."

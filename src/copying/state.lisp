@@ -11,9 +11,8 @@
 
 (defgeneric reference (object)
   (:documentation
-   "Return plain data that identifies OBJECT in its run: (KIND argument...), a keyword and data.
-Journals contain such data; DEREFERENCE returns the object that they identify in another run. Return
-NIL if OBJECT cannot be identified.")
+   "Return plain data that identifies OBJECT in its run: (KIND argument...), a keyword and data; or
+NIL. Journals contain such data; DEREFERENCE returns the object that they identify in another run.")
   (:method (object) (declare (ignore object)) nil))
 
 (defgeneric digest-state (object digest)

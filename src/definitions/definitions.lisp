@@ -87,11 +87,9 @@ belongs to a package in which users cannot define functions."
 
 (addition skip-definition skip-clause read-again)
 (document-restarts
- 'skip-definition "Leave out the definition with the mistake. An earlier definition of the same name
-remains."
+ 'skip-definition "Leave out the definition with the mistake. An earlier one of its name remains."
  'skip-clause "Leave out the clause of a map that has the mistake, and continue with the next."
- 'read-again "Read the definition, or the clause, again from its file, after you have corrected it
-there."
+ 'read-again "Read the definition or clause again from its file, after you have corrected it."
  'use-value "Use the value that you type instead: another clause, definition, name or value.")
 
 (defun ask-for-form (what)

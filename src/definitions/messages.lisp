@@ -43,8 +43,7 @@
          "the name of the robot whose command the message reports, or NIL" :export)
   ;; Several runs may share a queue.
   (run (funcall *reporting-run*) t "the run that the message belongs to, or NIL" :export)
-  (cause nil t "the condition or failure in users' code that the message reports, or NIL; see
-troubles.lisp" :export)
+  (cause nil t "the reported condition or failure in users' code, or NIL (troubles.lisp)" :export)
   (summary "" string "a text about the cause, on one line")
   (about nil (or null symbol) "the name of the command whose failure the message reports, or NIL")
   (told-p nil boolean "users' code has also received what the message reports" :export)

@@ -122,8 +122,7 @@ the users' names, the newest first, then the simulator's names."
 ;;; Defining.
 
 (defgeneric undo-definition (object)
-  (:documentation "Undo the effects of the definition of OBJECT. The entry in the registry is
-removed elsewhere.")
+  (:documentation "Undo the effects of OBJECT's definition. Its entry is removed elsewhere.")
   (:method (object) object))
 
 (defgeneric redo-definition (object)

@@ -50,9 +50,8 @@ sentence that says how to use this symbol; or NIL if there is no such symbol."
 ;;; Functions.
 
 (defgeneric function-of-command (name)
-  (:documentation "NAME is a symbol without a function. If NAME is a command at the prompt, return
-the name of the function that the command calls; else NIL. The layer that defines commands has a
-method.")
+  (:documentation "NAME is a symbol without a function. If it is a command at the prompt, return the
+name of the function that it calls; else NIL. The layer that defines commands has a method.")
   (:method (name) (declare (ignore name)) nil))
 
 (defun undefined-function-text (name)
@@ -115,8 +114,7 @@ method.")
 
 ;;; Syntax.
 
-(defvar *dispatch-remedies* '() "Lists (character remedy) for characters that can follow # in other
-readtables only.")
+(defvar *dispatch-remedies* '() "Lists (character remedy) for # characters of other readtables.")
 
 (defun note-dispatch-character (character remedy)
   "Register REMEDY, a sentence for the error that Lisp cannot read # followed by CHARACTER."

@@ -65,8 +65,7 @@ an error message that names its origin, and the run goes on.")
 
 (define-record (user-calls (:constructor make-user-calls (&optional stop)))
   "The calls of users' code by a thread, for a watcher. STOP, a function, ends the thread's work."
-  (origin nil t "the origin of the users' code that the thread is in, an item or a list of items; or
-NIL" :writable :export)
+  (origin nil t "the origin of the users' code: an item, a list of items, or NIL" :writable :export)
   (count 0 fixnum "the number of calls of users' code that the thread has begun" :writable :export)
   (waiting-p nil t "the latest call of users' code waits in a debugger" :writable :export)
   (place nil (or null function) "a function that returns the file and line of the form that the
@@ -143,14 +142,12 @@ again by itself, such as a kicker, return that function; else NIL.")
     nil))
 
 (defgeneric recurring-remedy (item)
-  (:documentation "Return a sentence that says how to end the calls of the recurring code that ITEM
-names. See RECURRING-CODE."))
+  (:documentation "Return a sentence on how to end the calls of ITEM's code, see RECURRING-CODE."))
 
 ;;; Calling.
 
 (document-restarts
- 'abort "Report the error as a message and leave your code, or end the plan or the trial that it is
-part of. The run goes on."
+ 'abort "Report the error as a message; leave your code, or end its plan or trial. The run goes on."
  'retry "Do again what failed, after you have corrected your code, as if nothing had happened."
  'continue "Continue as if nothing had been wrong."
  'stop-simulator "Report the error, leave your code and stop the live simulator.")

@@ -38,10 +38,9 @@ a list (dash gap ...). Can be set. A canvas may use other dashes" :writable :exp
 (public (graphics-scale* :ars))
 ;; As reading 208 says.
 (defvar graphics-scale* 8
-  "The width of a grid cell in pixels, in the display of the world (manual B). The default is 8.
-While GRAPHICS-SCALE* is 8, pictures without a :SCALE choose a scale that suits their map. Any other
-value is also the scale of these pictures. In a :graphics or :draw-function body, GRAPHICS-SCALE* is
-the scale of the picture.")
+  "The width of a grid cell in pixels, in the display of the world (manual B), by default 8. While
+it is 8, pictures without a :SCALE choose a scale that suits their map. Any other value also scales
+these pictures. In a :graphics or :draw-function body, GRAPHICS-SCALE* is the picture's scale.")
 
 (public in-color*)
 (defvar in-color* t
@@ -62,8 +61,7 @@ the scale of the picture.")
 
 (defun call-with-gcontext (function gcontext &key foreground background line-width line-style
                                                 dashes)
-  "Call FUNCTION while GCONTEXT is changed: each keyword argument that is not NIL sets an attribute
-of GCONTEXT."
+  "Call FUNCTION with GCONTEXT changed: each keyword argument that is not NIL sets an attribute."
   (check-pen foreground line-width line-style dashes)
   (let ((old (copy-gcontext gcontext)))
     (flet ((set-to (foreground background line-width line-style dashes)
@@ -97,8 +95,7 @@ integer #xRRGGBB. Without colours, BODY draws in black (manual B.1). Signals WRO
   `(with-gcontext (draw-gcontext* :line-width ,width :line-style ,style) ,@body))
 
 (defmacro with-dashes ((dashes &key (width 1)) &body body)
-  "Run BODY, which draws lines WIDTH pixels wide. DASHES is a list of lengths (dash gap ...), or NIL
-for solid lines."
+  "Run BODY, which draws lines WIDTH pixels wide. DASHES are lengths (dash gap ...) or NIL (solid)."
   (with-gensyms (value)
     `(let ((,value ,dashes))
        (with-gcontext (draw-gcontext* :line-width ,width :line-style (if ,value :dash :solid)
@@ -148,8 +145,7 @@ polygon instead."))
   (:documentation "Paint STRING, which has no newlines. Its base line begins at X, Y."))
 
 (defgeneric call-with-clipping (function canvas x y width height)
-  (:documentation "Call FUNCTION, and clip what it paints to the box X, Y, WIDTH, HEIGHT of
-CANVAS."))
+  (:documentation "Call FUNCTION; clip what it paints to the box X, Y, WIDTH, HEIGHT of CANVAS."))
 
 (defgeneric call-with-origin (function canvas x y)
   (:documentation "Call FUNCTION while X, Y is the origin of all coordinates on CANVAS."))
@@ -169,8 +165,7 @@ CANVAS."))
   (:method (subject) (princ-to-string subject)))
 
 (defgeneric call-with-subject (function canvas subject)
-  (:documentation "Call FUNCTION, which paints SUBJECT. A canvas may let the user point at
-SUBJECT.")
+  (:documentation "Call FUNCTION, which paints SUBJECT. A canvas may let the user point at it.")
   (:method (function canvas subject)
     (declare (ignore canvas subject))
     (funcall function)))

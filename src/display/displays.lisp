@@ -4,9 +4,8 @@
 
 (export '(draw-display display-title +displays+))
 
-;;; The function of a display (manual B) gets the image of the robot and the width. It draws from 0,
-;;; 0 and returns its height. (In the loops, Y steps before the parts run out, and so ends below the
-;;; last part.)
+;;; The function of a display (manual B) gets the robot's image and the width. It draws from 0,0 and
+;;; returns its height. (In the loops, Y steps before the parts run out, so it ends below the last.)
 
 (defconstant +margin+ 6 "The margin of a display, in pixels.")
 (defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")
@@ -250,9 +249,8 @@ display takes no new view, so that it shows only what the robot knows."
       (:cameras "Cameras" draw-camera robot-image-cameras)
       (:hands "Hands" draw-hand robot-image-hands) (:bins "Storage bins" draw-bin robot-image-bins))
   :test #'cl:equal
-  :documentation "The displays except the display of the world: lists (name title function [parts]).
-FUNCTION draws the display. PARTS, if given, is a function that returns parts of the robot; FUNCTION
-then draws one part.")
+  :documentation "The displays except that of the world: lists (name title function [parts]).
+FUNCTION draws the display. PARTS, if given, returns parts of the robot; FUNCTION then draws one.")
 
 ;; As reading 27 says.
 (define-constant +displays+ (cons :world (mapcar #'first +details+))

@@ -56,9 +56,8 @@ multiple of MULTIPLE numbers."
   (paint-rectangles drawable gcontext rectangles fill-p))
 
 (define-drawing draw-arc (drawable gcontext (x y width height angle1 angle2) &optional fill-p)
-    "Draw an arc inscribed in the box with its upper left corner at X, Y. The arc begins at ANGLE1
-and extends over ANGLE2, in radians, counterclockwise from three o'clock. If FILL-P, fill the
-slice."
+    "Draw an arc inscribed in the box with the upper left corner X, Y. It begins at ANGLE1 and
+extends over ANGLE2, in radians, counterclockwise from three o'clock. If FILL-P, fill the slice."
   (paint-arc drawable gcontext x y width height angle1 angle2 fill-p))
 
 (define-drawing draw-arcs (drawable gcontext (arcs 6) &optional fill-p)
@@ -157,9 +156,8 @@ CLX. Signals WRONG-ARGUMENT."
 
 ;;;; Text of any size, for charts
 
-;;; The width of a text depends on the viewer's fonts. The widths here are upper bounds: of DejaVu
-;;; Sans and of Helvetica, which Arial and Liberation Sans resemble, the wider one. So what fits by
-;;; them fits everywhere.
+;;; The width of a text depends on the viewer's fonts. The widths here are upper bounds: those of
+;;; the wider of DejaVu Sans and Helvetica, which Arial and Liberation Sans resemble.
 
 (define-constant +text-font+ "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif"
   :test #'equal

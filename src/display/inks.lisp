@@ -16,8 +16,7 @@
       (funcall function))))
 
 (defmacro with-halo ((color &key (width 1) dashes) &body body)
-  "Run BODY, which draws lines, twice: first for a white halo, then in the dark colour COLOR, WIDTH
-pixels wide, with DASHES."
+  "Run BODY, which draws lines, twice: for a white halo, then in dark COLOR, with WIDTH and DASHES."
   `(call-with-halo (lambda () ,@body) ,color ,width ,dashes))
 
 ;;; Each of several robots or ways has a colour and dashes by its position. There are 8 colours and

@@ -58,8 +58,7 @@
     name))
 
 (defmacro define-layer (name title sentence &rest options)
-  "Define the layer NAME, a keyword, with TITLE in menus. SENTENCE says what the layer shows.
-OPTIONS:
+  "Define the layer NAME, a keyword, with TITLE in menus. SENTENCE says what it shows. OPTIONS:
 - :default-p t: pictures show the layer unless :LAYERS is given.
 - :depth: the depth at which the layer is drawn, by default :ROBOTS. See the head of layer.lisp.
 - :shown, a function: returns what to draw. The default is the value of :note for the robot. See the

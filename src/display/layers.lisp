@@ -111,8 +111,7 @@ form as that of SHOWN-LAYERS-AT-DEPTH."
   :text-name :plan :text 'planned-way-marks)
 
 (define-layer :reach "What moves by itself"
-  "A dashed ring around each thing that has kickers. The distance that kickers can move a thing is
-unknown."
+  "A dashed ring around each thing with kickers. How far kickers can move a thing is unknown."
   :depth :things :shown 'moving-thing-images :draw 'draw-reach
   :ink #x5A3A00 :dashes '(3 3) :legend "may move")
 

@@ -33,10 +33,9 @@ MISUSE if GRAPHICS-SCALE* is not a valid scale."
   "A larger scale, in pixels per cell, also magnifies text, unless that scale suits the map.")
 
 (defstruct (arrangement (:copier nil))
-  "The layout of a picture, in pixels. LEFT, TOP, RIGHT and BOTTOM are the margins of the map. WIDTH
-and HEIGHT are the size of the picture. COLUMNS are the columns of the legend, lists of entries. The
-legend is below the map if BELOW-P, else LEGEND-LEFT pixels from the left of the map. TITLE and
-SUBTITLE are lists of lines."
+  "The layout of a picture, in pixels. LEFT, TOP, RIGHT and BOTTOM are the map's margins, WIDTH and
+HEIGHT the size of the picture. COLUMNS are the legend's columns, lists of entries. The legend is
+below the map if BELOW-P, else LEGEND-LEFT from its left. TITLE and SUBTITLE are lists of lines."
   (left 0) (top 0) (right 0) (bottom 0) (columns '()) (below-p nil) (legend-left 0)
   (title '()) (subtitle '()) (width 0) (height 0))
 
@@ -293,8 +292,7 @@ of LEGEND-ENTRIES for the other entries."
     (values (arrangement-width arrangement) (arrangement-height arrangement) left)))
 
 (defun draw-framed-world (canvas snapshot layers &key title)
-  "Draw the world of SNAPSHOT with LAYERS, and with TITLE as in DRAW-FRAMED. Return the width and
-height in pixels."
+  "Draw SNAPSHOT with LAYERS, and TITLE as in DRAW-FRAMED. Return the width and height in pixels."
   (draw-framed canvas snapshot layers
                (lambda ()
                  (draw-terrain canvas (snapshot-map snapshot) :layers layers)

@@ -108,9 +108,8 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
 
 ;;; Robots.
 
-;;; A robot is drawn hollow and below things, so that it does not hide what it is about to grasp.
-;;; Each of several has a colour and dashes by its position. Without colours, the heads of every
-;;; second five are hollow.
+;;; Robots are drawn hollow, below things, to show what they are about to grasp. Several robots
+;;; have colours and dashes by position. Without colours, the heads of every second five are hollow.
 
 (defun robot-radius ()
   "Return the radius of the ring of a robot, in pixels. It is nearly a cell, but half a cell where

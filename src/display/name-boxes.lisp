@@ -94,9 +94,8 @@ around X, Y. ROBOT is the image of a robot, or NIL for a thing."
           collect (list left top (+ left width) (+ top high)))))
 
 (defun boxes-beside (x y half width marks)
-  "Return boxes like CANDIDATE-NAME-BOXES. If a box of the index MARKS, such as the ring of a track,
-overlaps the spot, add boxes beside such a ring. Without a ring, names so far away would be
-ambiguous."
+  "Return boxes like CANDIDATE-NAME-BOXES. If a box of the index MARKS, such as a track's ring,
+overlaps the spot, add boxes beside it. Without a ring, names so far away would be ambiguous."
   (append (candidate-name-boxes x y half width)
           (and (find-overlapping-item (box-around x y half) marks)
                (candidate-name-boxes x y (max half (+ 2 (track-radius))) width))))

@@ -136,8 +136,7 @@ same point and for rings around each other, whose names belong together."
 
 (define-constant +leader-lengths+ '(10 18 28 40 56 76)
   :test #'cl:equal
-  :documentation "The possible lengths of lines to names, in pixels. The shortest possible length is
-used.")
+  :documentation "The lengths of lines to names, in pixels; the shortest possible is used.")
 
 (defun name-box-at-line-end (x y angle width)
   "Return the box of a name WIDTH pixels wide at the end X, Y of a line in direction ANGLE."

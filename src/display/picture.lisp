@@ -116,10 +116,9 @@ SNAPSHOT. LOOK are options of WRITE-PICTURE."
 (addition save-picture)
 (define-with-keywords save-picture
     (robot file &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
-  "Save a picture of the present world of ROBOT in FILE, replacing an older file. Return the
-truename of FILE. The name ends in .svg or, if the program rsvg-convert is installed, in .png. The
-other arguments are those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is
-needed but not installed."
+  "Save a picture of ROBOT's present world in FILE, replacing an older file. Return the truename.
+The name ends in .svg, or in .png if the program rsvg-convert is installed. The other arguments are
+those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is missing."
   (picture-kind 'save-picture file)
   (check-picture 'save-picture robot display layers scale title)
   (let ((snapshot (snapshot-of robot)))
@@ -153,8 +152,7 @@ needed but not installed."
 
 (defun check-ways (ways)
   (check-argument save-way-picture ways (not (and (proper-list-p ways) (member nil ways)))
-                  "a list of ways. It must not contain NIL, which FIND-WAY returns if there is no
-way")
+                  "a list of ways, without NIL, which FIND-WAY returns if there is no way")
   (check-argument save-way-picture ways (and (proper-list-p ways) (every #'way-p ways))
                   "a list of ways; each way is a list of PT objects or of lists (x y)"))
 

@@ -16,16 +16,14 @@
   (things #() t "a vector of the images of the things on the floor, by serial number" :export)
   (robots '() t "a list of the images of the robots" :export)
   (part nil t
-        "the part of the map to show, (left top right bottom) in cells, or NIL for the whole
-map" :export))
+        "the part of the map to show, (left top right bottom) in cells, or NIL for all" :export))
 
 (define-record thing-image
   "The image of a thing: all that pictures show of the thing at one moment."
   (thing nil t "the thing itself" :export)
   (x 0d0 t "the thing's x coordinate, in metres" :export)
   (y 0d0 t "the thing's y coordinate, in metres" :export)
-  (location nil t "a text with the container of the thing, such as `in hand 0 of ROBBIE', or
-NIL" :export)
+  (location nil t "a text on the thing's container, such as `in hand 0 of ROBBIE', or NIL" :export)
   (attributes '() t "a list (name value) for each attribute of the thing" :export)
   (color 0 t "the colour in displays")
   (size 0d0 t)
@@ -38,8 +36,7 @@ NIL" :export)
 (define-record robot-image
   "The image of a robot: all that pictures show of the robot at one moment."
   (name nil t "the name of the robot, a symbol" :export)
-  (position 0 t "the robot's position in the list of robots of its world, which determines its
-look")
+  (position 0 t "the robot's position in its world's list of robots, which determines its look")
   (x 0d0 t "the robot's x coordinate, in metres" :export)
   (y 0d0 t "the robot's y coordinate, in metres" :export)
   (angle 0d0 t "the robot's heading, in radians" :export)
@@ -72,8 +69,7 @@ look")
   (index 0 t "the number of the hand" :export)
   (strength 0d0 t)
   (contents nil t "the image of the thing that the hand holds, or NIL" :export)
-  (location nil t "the container that the hand is in: the image of a thing, a string, or
-NIL" :export))
+  (location nil t "the hand's container: the image of a thing, a string, or NIL" :export))
 
 (define-record bin-image
   "The image of a storage bin: all that pictures show of the bin at one moment."
@@ -89,8 +85,7 @@ NIL" :export))
   (angle 0d0 t)
   (distance 0d0 t)
   (denotation nil t
-              "what the designator denotes: the image of a thing, the name of a place type, or
-NIL" :export)
+              "the denotation: the image of a thing, the name of a place type, or NIL" :export)
   (x nil t "the x coordinate in metres of what the designator denotes")
   (y nil t "the y coordinate in metres of what the designator denotes"))
 

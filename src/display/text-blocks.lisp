@@ -160,8 +160,7 @@ the glyph shows the substance by its colour."
 ;;; Places.
 
 (define-constant +place-glyphs+ "=:.;,'~\"|-/\\_" :test #'equal
-  :documentation "The characters of place types, by their rank. All higher ranks have the last
-character.")
+  :documentation "The characters of place types, by rank. Higher ranks have the last one.")
 
 (defun place-glyphs (map indices)
   "Return a list with the glyph of the first place of MAP in the cells INDICES, or NIL."

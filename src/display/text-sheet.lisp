@@ -92,8 +92,7 @@
 
 ;;;; Sheets
 
-;;; A block shows what matters most in it: a robot, beliefs, things, ways, walls, a place, what
-;;; cameras see.
+;;; A block shows what matters most: a robot, beliefs, things, ways, walls, a place, camera views.
 
 (defstruct (sheet (:copier nil))
   "A text map before it is written. GLYPHS is a vector with the visible glyph, or NIL, of each block

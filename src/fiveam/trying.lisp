@@ -119,8 +119,7 @@ say that PARAMETERS is an argument of OPERATOR."
 
 ;; The trials that count are decided in their order, whichever worker runs them.
 (defun run-next-trials (check first)
-  "Run some trials of CHECK, from the number FIRST on, and return their results in order. With one
-worker, run only one trial."
+  "Run trials of CHECK from FIRST on, only one if there is one worker. Return the results in order."
   (let* ((workers (check-workers check))
          (last (min (check-trials check) (+ first (max first (* 8 workers)))))
          (results (make-array (- last first -1)))

@@ -9,10 +9,9 @@
 (defconstant +most-description-octets+ 65536 "The largest size of a floor's description, in bytes.")
 
 (defstruct (description (:copier nil))
-  "The description of a floor: its IMAGE, a pathname; RESOLUTION, the width of a pixel in metres;
-ORIGIN, the lower left corner in metres and the counterclockwise rotation in radians; NEGATED-P,
-true if white is occupied; the probabilities above which a pixel is OCCUPIED and below which it is
-FREE; and the MODE."
+  "A floor: its IMAGE, a pathname; RESOLUTION, a pixel's width in metres; ORIGIN, the lower left
+corner in metres and the counterclockwise rotation in radians; NEGATED-P, true if white is occupied;
+the probabilities above which a pixel is OCCUPIED and below which it is FREE; and the MODE."
   (file nil :type pathname :read-only t)
   (image nil :type pathname :read-only t)
   (resolution 1 :type rational :read-only t)

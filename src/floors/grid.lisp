@@ -118,8 +118,7 @@ the first cell and the length of each run."
 
 (defun number-runs (runs lines per-line line-step allowed)
   "Number the runs of cells whose state has its bit set in ALLOWED, and store the numbers in RUNS.
-The grid has LINES lines of PER-LINE cells; LINE-STEP is the difference of the indices of two
-neighbouring lines."
+The grid has LINES lines of PER-LINE cells; LINE-STEP is the index step to the next line."
   (declare #.*hot* (type fixnum lines per-line line-step allowed))
   (let ((cells (runs-cells runs)) (of (runs-of runs)) (step (runs-step runs)) (count 0))
     (declare (type octets cells) (type numbers of) (type fixnum step count))
@@ -150,8 +149,7 @@ neighbouring lines."
   (reduce #'logior states :key (lambda (state) (ash 1 state))))
 
 (defun find-runs (grid allowed along)
-  "Return the runs of GRID along its :ROWS or :COLUMNS, as ALONG says. All cells of a run are in
-states of the list ALLOWED."
+  "Return GRID's runs of cells with states in the list ALLOWED. ALONG is :ROWS or :COLUMNS."
   (let* ((width (grid-width grid)) (height (grid-height grid)) (rows (eq along :rows))
          (runs (make-runs (if rows 1 width) (grid-cells grid)
                           (make-number-vector (* width height)))))
@@ -160,8 +158,7 @@ states of the list ALLOWED."
     (measure-runs runs)))
 
 (defun run-ends (runs run width)
-  "Return a list of the first and the last cell, lists (x y), of the run with the number RUN. The
-grid is WIDTH cells wide."
+  "Return a list of the first and last cell (x y) of run number RUN in a grid WIDTH cells wide."
   (flet ((place (index) (nreverse (multiple-value-list (floor index width)))))
     (let ((start (aref (runs-starts runs) run)))
       (list (place start)

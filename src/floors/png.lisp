@@ -23,10 +23,9 @@ less than END only at the end of the data; NIL if the data are damaged."
 
 ;;;; Rows
 
-;;; Each row begins with the number of its filter. A filter has subtracted from each octet a
-;;; prediction by the octets to the left, above, or both. The octet to the left is that of the same
-;;; channel, STEP before. Here a row has STEP zeros in front, so that there always is one.
-;;; (www.w3.org/TR/png-3, 9)
+;;; Each row begins with its filter's number. A filter has subtracted from each octet a prediction
+;;; by the octets to the left, above, or both. The octet to the left is that of the same channel,
+;;; STEP before. Here STEP zeros precede a row, so there always is one. (www.w3.org/TR/png-3, 9)
 
 (defun png-pixel-octets (png)
   (max 1 (floor (* (png-channels png) (png-depth png)) 8)))

@@ -156,8 +156,7 @@ file at that time; NIL if FUNCTION was typed."
     (error () (ignore-errors (file-of-code function)))))
 
 (defun files-of-other-definitions (symbol)
-  "Return a list (file write-date), as for FUNCTION-FILE, for each definition of SYMBOL that is not
-a function."
+  "Return lists (file write-date), see FUNCTION-FILE, for SYMBOL's definitions except functions."
   (loop for kind in '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class
                       :structure :condition)
         append (loop for source in (ignore-errors

@@ -24,8 +24,7 @@
 
 ;;;; The front end, such as the prompt, that can ask a person
 
-(defvar *front-end* nil "The front end that can ask the user, such as the prompt, an object; NIL if
-there is none.")
+(defvar *front-end* nil "The front end, such as the prompt, that can ask the user; or NIL.")
 
 (defgeneric serve-while-waiting (front-end)
   (:documentation "Do the pending work of FRONT-END. A thread that waits for another thread calls
@@ -33,8 +32,7 @@ this function repeatedly.")
   (:method (front-end) (declare (ignore front-end))))
 
 (defgeneric hook-of-front-end (front-end)
-  (:documentation "Return the debugger hook of FRONT-END, to be used after an editor has
-disconnected; or NIL.")
+  (:documentation "Return FRONT-END's debugger hook, for use after an editor disconnects, or NIL.")
   (:method (front-end) (declare (ignore front-end))))
 
 (defgeneric ask-user-for-restart (front-end condition)
@@ -43,8 +41,7 @@ has disconnected. Return only if FRONT-END cannot ask the user.")
   (:method (front-end condition) (declare (ignore front-end condition))))
 
 (defgeneric program-input (front-end stream)
-  (:documentation "Return the stream that users' code reads in place of STREAM, in a thread of a
-run.")
+  (:documentation "Return the stream that users' code in a run's thread reads instead of STREAM.")
   (:method (front-end stream) (declare (ignore front-end)) stream))
 
 ;;;; Debuggers

@@ -126,8 +126,7 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
         ((not (regular-file-p path)) "it is a directory or a device")))
 
 (defun check-name-decodable (path)
-  "Signal an error if the name PATH has bytes that are not valid text. (Several invalid names can
-look the same.)"
+  "Signal an error if PATH has bytes that are not valid text. (Invalid names can look the same.)"
   (when (find +illegible+ (native-name path))
     (error "its name has bytes that are not UTF-8; give it a name in UTF-8")))
 
@@ -270,8 +269,7 @@ also the error output, a string."
       (when errors (uiop:close-streams process)))))
 
 (defun run-attached (program arguments)
-  "Run PROGRAM as RUN-CHILD-PROGRAM does, on this process's standard streams. Return the exit status
-or NIL."
+  "Run PROGRAM as RUN-CHILD-PROGRAM does, on our standard streams. Return the exit status or NIL."
   (run-child-program program arguments
                      :input :interactive :output :interactive :error-output :interactive))
 

@@ -125,9 +125,8 @@ CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outs
 
 ;; UNWIND-PROTECT-STRICTLY is for little work that is done often; it allows no interrupts.
 (defmacro in-any-case (&body forms)
-  "Evaluate FORMS in order. After a non-local exit such as THROW from a form, still evaluate the
-others. Interrupts are deferred until the end, except during waits and in users' code. Return the
-values of the first form."
+  "Evaluate FORMS in order and return the values of the first. After a non-local exit from one,
+still evaluate the others. Interrupts are deferred until the end, except in waits and users' code."
   (let ((names (loop for nil in forms collect (gensym "PART"))))
     `(flet ,(loop for name in names
                   for form in forms

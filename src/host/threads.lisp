@@ -143,9 +143,8 @@ threads start with global values; such a function gives them the values bound in
 
 ;;;; Names that other threads have bound to their own robots
 
-;;; WITH-SIMULATION binds robots' names for the thread of its body only. In another thread the same
-;;; name is the top level's robot, which may surprise its user. Code that gets a request for that
-;;; robot can explain why.
+;;; WITH-SIMULATION binds robots' names for the thread of its body only. Elsewhere the name is the
+;;; top level's robot, which may surprise users. Code that gets a request for it can explain why.
 
 (defvar *bound-robot-names* (list '())
   "A list of one list, with (thread number name...) for each WITH-SIMULATION in progress.")
@@ -174,9 +173,8 @@ messages in other threads. Return the values of FUNCTION."
                  (cddr entry) (thread-name (first entry))))))
 
 (defun other-thread-robot-text (name)
-  "If another thread has bound NAME to a robot, and this thread has not bound NAME, return two
-values: a text that says how code in this thread can use that robot, and the number of the binding.
-Else return NIL."
+  "If another thread has bound NAME to a robot, and this thread has not, return two values: a text
+on how code in this thread can use that robot, and the number of the binding; else NIL."
   (let ((entries (remove-if-not (lambda (entry) (member name (cddr entry) :test #'eq))
                                 (car *bound-robot-names*)))
         (word (string-downcase name)))

@@ -1,8 +1,7 @@
 ;;;; package.lisp -- the Nisp dialect, as far as the manual uses it (manual 3.1).
 
 (defpackage :ars-magna.slots
-  (:documentation "The accessors of slots by name, such as !_X for the slot x of all types. See
-types.lisp.")
+  (:documentation "The accessors of slots by name, such as !_X for all slots x; see types.lisp.")
   (:use))
 
 (ars-magna.host:define-package :ars-magna.nisp

@@ -17,8 +17,7 @@ logarithms. MARKS are lists (value line...) with lines of text, vertical if UPWA
   "Return VALUE or, if LOG-P, its decimal logarithm. Signals WRONG-ARGUMENT if it has none."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
-                           "a number above 0 on a logarithmic axis; leave :log-x out, or give the
-value as a string")
+                           "a number above 0 on a log axis; omit :log-x or give it as a string")
            (let ((power (decimal-exponent value)))
              (+ power (rational (/ (logarithm (/ value (expt 10 power))) (logarithm 10))))))))
 

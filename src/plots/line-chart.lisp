@@ -68,8 +68,7 @@ text; Y, LOW and HIGH may be NIL."
 (defconstant +largest-series-shift+ 8 "The greatest shift between two series, in pixels.")
 
 (defun series-shift-step (count gap)
-  "Return the horizontal shift from one of COUNT series to the next, in pixels, if points of a
-series are GAP pixels apart."
+  "Return the horizontal shift in pixels between two of COUNT series with points GAP pixels apart."
   (min +largest-series-shift+ (/ (* 6/10 gap) (max 1 count))))
 
 (defun inset-for-series (series values from to log-p)

@@ -37,8 +37,7 @@ robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
    (location nil t "the container or bin where the denotation was seen, or NIL" :addition)
    (bearing 0d0 double-float "the true direction in which the denotation was last seen, in radians")
    (bearing-p nil boolean "the denotation was seen from far enough to have a direction")
-   (relative-bearing 0d0 double-float "the true direction relative to the robot's heading, in
-radians")
+   (relative-bearing 0d0 double-float "the true direction from the robot's heading, in radians")
    (swing 0d0 double-float "by how much the direction changed in the tick REFRESHED, in radians")
    (refreshed -1 fixnum "the tick in which the designator was last updated")))
 
@@ -126,8 +125,7 @@ thing in a hand is where the hand is."
           (t location))))
 
 (defun denotation-enclosure (designator)
-  "Return the THING-ENCLOSURE of the thing that DESIGNATOR denotes. If another robot's hand holds
-the thing, return this hand."
+  "Return the THING-ENCLOSURE of DESIGNATOR's thing, or another robot's hand if that holds it."
   (let* ((thing (designator-denotation designator)) (location (thing-location thing)))
     (if (and (hand-p location)
              (not (eq (part-robot location) (designator-robot designator))))

@@ -23,9 +23,8 @@
 
 (addition find-robot)
 (defun find-robot (name &optional (errorp t))
-  "Return the robot named NAME, a symbol or string: the robot that the variable of this name holds.
-If NAME is a robot, return it. If there is no such robot, signal UNKNOWN-NAME, or return NIL if
-ERRORP is NIL."
+  "Return the robot named NAME, a symbol or string: the value of the variable of this name. If NAME
+is a robot, return it. If there is none, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
   (if (robot-p name)
       name
       (let ((blueprint (find-blueprint name errorp)))

@@ -5,11 +5,10 @@
 (export '(odometer-estimate robot-place-here sense-place-type canonical-directions
           nearest-direction))
 
-;;; An odometer is dead reckoning with intervals. It starts at (0,0) with heading 0 when it is
-;;; reset, so the x axis of its positions is the heading at that moment. Each step adds an interval
-;;; that contains the true movement, so the sum contains the true position. The bounds of the cosine
-;;; and sine of the heading change only when the robot turns. Sums are widened by more than their
-;;; rounding error.
+;;; An odometer is dead reckoning with intervals. It starts at (0,0) with heading 0 when reset, so
+;;; the x axis of its positions is the heading then. Each step adds an interval that contains the
+;;; true movement, so the sum contains the true position. The bounds of the cosine and sine of the
+;;; heading change only when the robot turns. Sums are widened by more than their rounding error.
 
 (public odometer)
 (addition odometer-p)

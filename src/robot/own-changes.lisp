@@ -22,11 +22,10 @@ last interruption at that time. After another interruption the way is no longer 
 
 (addition publish-way)
 (defun publish-way (robot points)
-  "Show the way of ROBOT through POINTS in pictures, in the layer :PLANNED-WAY. POINTS is a list of
-PTs or lists (x y), as FIND-WAY returns it; () removes the way. The way is shown until you publish
-another way or a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call this, and your
-programs can. ROBOT does not move, and digests and journals do not change. Return ROBOT. Signals
-WRONG-ARGUMENT."
+  "Show ROBOT's way through POINTS in pictures, in the layer :PLANNED-WAY. POINTS is a list of PTs
+or lists (x y), as from FIND-WAY; () removes the way. The way is shown until you publish another or
+a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call this, and your programs can.
+ROBOT does not move; digests and journals do not change. Return ROBOT. Signals WRONG-ARGUMENT."
   (check-argument publish-way robot (robot-p robot) (argument-type-text 'robot robot))
   (check-argument publish-way points
                   (proper-list-of-p (lambda (point) (or (pt-p point) (number-pair-p point))) points)

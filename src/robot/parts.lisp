@@ -60,8 +60,7 @@
    (turn-angle 0.3d0 double-float "the turning speed that was set, in radians per tick" :addition)
    (odometer-list '() list "the robot's odometers, oldest first" :part)
    (designators (make-array 4 :adjustable t :fill-pointer 0) vector
-                "the vector of the robot's designators by number; an element is NIL if no designator
-has the number" :part :export)
+                "the robot's designators by number, with NIL for free numbers" :part :export)
    (designators-made 0 fixnum "how many designators the robot has had so far")
    (ended-tracks '() list
                  "a list of (track . code) for the tracks ended in this tick, newest first" :export)

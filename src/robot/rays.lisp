@@ -73,9 +73,8 @@ there, continue the ray. Return a list of the cells with things that the continu
 (defmacro do-rays ((dx dy &optional (per-x (gensym)) (per-y (gensym))) (angle width count)
                    &body body)
   "Run BODY for each of COUNT directions DX, DY, evenly spaced over WIDTH radians around
-ANGLE (reading 146), with their reciprocals PER-X and PER-Y, finite and not 0. The values for a
-direction are computed before BODY runs for the previous direction, so that the processor can divide
-while BODY runs."
+ANGLE (reading 146), with their reciprocals PER-X and PER-Y, finite, not 0. A direction's values are
+computed before BODY runs for the previous one, so the processor can divide while BODY runs."
   (with-gensyms (spacing first cos sin next-x next-y next-per-x next-per-y)
     `(let* ((,spacing (/ ,width ,count))
             (,first (- ,angle (* 0.5d0 (- ,width ,spacing))))

@@ -218,8 +218,7 @@ symbol by which the caller asked for TYPE (reading 74)."
 ;;; Each pixel is the parameter of the surface that its ray meets: a wall, the largest thing that
 ;;; obstructs vision in the first cell that has one, or 0 at the edge of the map. Things on the way
 ;;; that have a substance but do not obstruct vision corrupt it: the pixel is the mean of them all.
-;;; Things in the robot's own cell do not count. From inside a container, only the container is
-;;; seen.
+;;; Things in the robot's own cell do not count. From inside a container, only that is seen.
 
 (defun obstructing-thing (index world)
   "Return the largest thing in the cell INDEX that obstructs vision, or NIL (reading 240)."

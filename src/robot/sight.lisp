@@ -139,8 +139,7 @@ cell that blocks ROBOT and that ROBOT touches (reading 108)."
 
 (defun arrived-at-point-p (robot x y last-step block)
   "True if ROBOT has arrived at (X,Y) by its drive in this tick. LAST-STEP is true if ROBOT could
-reach (X,Y) in the tick; BLOCK is true if an obstacle blocked ROBOT. Nothing may hide (X,Y) from
-ROBOT (reading 108)."
+reach (X,Y), BLOCK if an obstacle blocked ROBOT. Nothing may hide (X,Y) from ROBOT (reading 108)."
   (or (in-same-cell-p robot x y)
       (and (within-reach-p robot x y)
            (or last-step

@@ -56,8 +56,7 @@ robot's cell the walk ends with probability PROB-STOP*, and always at the map's 
           finally (return (edge-point robot map (1- metres) dx dy)))))
 
 (defun edge-point (robot map metres dx dy)
-  "Return the point where the ray from ROBOT in direction DX, DY leaves MAP, at a distance between
-METRES and METRES + 1."
+  "Return where the ray from ROBOT in direction DX, DY leaves MAP, METRES to METRES + 1 away."
   (flet ((exit (position direction size)
            (cond ((plusp direction) (/ (- size position) direction))
                  ((minusp direction) (/ (- position) direction))

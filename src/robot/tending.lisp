@@ -74,8 +74,7 @@ During an approach a free line to a corner of the cell is enough."
 ;;; - when the robot arrives. A command that drives the robot to something ends the track on
 ;;;   arrival; else only the robot's own cell counts
 ;;; - by chance
-;;; A local designator of something in the open that is out of reach becomes a non-local one. A
-;;; false designator drifts.
+;;; A local designator of an object out of reach in the open becomes non-local. A false one drifts.
 
 ;;; Refreshing.
 

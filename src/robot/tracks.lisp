@@ -6,9 +6,8 @@
 
 ;;; A track runs in the background of a camera's commands: the camera keeps pointing at its
 ;;; designator's denotation. Tracks are updated once a tick, after events and kickers. A track may
-;;; end at any moment of a tick, at once. Its continuation is called later, in the tracks phase,
-;;; after the command that ended the track has reported its own end; only an interruption is
-;;; reported at once.
+;;; end at any moment of a tick. Its continuation is called later, in the tracks phase, after the
+;;; command that ended it has reported its own end; only an interruption is reported at once.
 ;;;
 ;;; A tracked designator becomes invalid when its last track is lost. An untracked one becomes
 ;;; invalid when its denotation moves, unless a hand grasps it or sets it down; a local one also
@@ -19,8 +18,7 @@
     "The state of a camera that tracks a designator."
   (:state
    (designator nil (or null designator) "what is tracked")
-   (operation nil t "the operation that NOTIFY-TRACK-END is called with when the track ends, or
-NIL" :export)))
+   (operation nil t "the operation for NOTIFY-TRACK-END when the track ends, or NIL" :export)))
 
 (defgeneric notify-track-end (operation code designator)
   (:documentation "Report to OPERATION that its track of DESIGNATOR has ended with CODE."))
@@ -84,8 +82,7 @@ had no track. See reading 161."
       (track-designator track))))
 
 (defun drop-designator (designator &key silently)
-  "Make DESIGNATOR invalid and free its number. Cameras lose their tracks of DESIGNATOR. Queue
-warnings unless SILENTLY."
+  "Make DESIGNATOR invalid, free its number and end its tracks. Queue warnings unless SILENTLY."
   (when (designator-valid-p designator)
     (unless silently
       (let ((*reported-robot* (robot-name (designator-robot designator))))

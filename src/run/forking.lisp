@@ -46,9 +46,8 @@
     copy))
 
 (defun fork-options (simulation continuations decisions)
-  "Return the options of a copier that forks SIMULATION. If CONTINUATIONS is true, it also copies
-the continuations of commands in progress. DECISIONS is an alist of replacements for values that
-cannot be copied."
+  "Return the options of a copier that forks SIMULATION. If CONTINUATIONS, it also copies the
+continuations of commands in progress. DECISIONS, an alist, replaces values that cannot be copied."
   (list :simulation simulation
         :world (simulation-world simulation)
         :participants (simulation-participants simulation)

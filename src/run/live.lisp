@@ -193,9 +193,8 @@ MISUSE if the robot no longer fits into its map. See reading 238."
 
 (addition stop-simulator)
 (defun stop-simulator (&optional (simulation (current-simulation)))
-  "Stop the live SIMULATION, which may be given as one of its robots, after its current tick.
-Commands in progress stay pending. If SIMULATION was rewound, stop its successor. Return nothing.
-See reading 89."
+  "Stop the live SIMULATION (or that of a robot) after its current tick. Commands in progress stay
+pending. If SIMULATION was rewound, stop its successor. Return nothing. See reading 89."
   (let ((simulation (resolve-simulation simulation 'stop-simulator)))
     (stop-clock simulation)
     ;; Another thread may have started it again.

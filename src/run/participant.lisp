@@ -38,8 +38,7 @@
   nil)
 
 (define-participant-function participant-at-work-p (participant)
-  "True if PARTICIPANT is working, has a notification to process, or waits for a time. Any thread
-may call this function."
+  "True if PARTICIPANT works, has notifications, or waits for a time. Any thread may call this."
   nil)
 
 (define-participant-function participant-reseed (participant seed)

@@ -199,9 +199,8 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
         (remove-observer #'look simulation)))))
 
 (defun wait-on-idle-semaphore (idle seconds simulation)
-  "Wait at most SECONDS until SIMULATION is idle. Return true if it is idle. The semaphore IDLE is
-signalled when SIMULATION may be idle, but not when a plan ends. Signals MISUSE if SIMULATION has
-failed."
+  "Wait at most SECONDS until SIMULATION is idle. Return true if it is. The semaphore IDLE is
+signalled when it may be idle, but not when a plan ends. Signals MISUSE if SIMULATION has failed."
   (loop with due = (+ (seconds-now) seconds)
         do (check-not-failed simulation)
         thereis (all-at-rest-p simulation)

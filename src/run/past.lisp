@@ -100,15 +100,13 @@ since the last call, or NIL. Only in a headless run do all programs share the sa
       (if (eq before (past-rolled past)) nil (past-rolled past)))))
 
 (defun record-dice (simulation)
-  "Record the dice of programs in the past of SIMULATION if code that a fork may not repeat has
-rolled them."
+  "Record programs' dice in SIMULATION's past if code that a fork may not repeat has rolled them."
   (let ((rolled (update-rolled-dice simulation (simulation-past simulation))))
     (when rolled (record-act simulation #'restore-random-snapshot (list rolled)))))
 
 (defun record-outside-act (simulation function &rest arguments)
-  "If SIMULATION has a past, record an act of a program outside the run that is not in the journal.
-A call of FUNCTION with ARGUMENTS repeats the act. Acts that a fork repeats by itself are not
-recorded. Return nothing."
+  "If SIMULATION has a past, record a program's act outside the run and its journal. FUNCTION with
+ARGUMENTS repeats it. Acts that a fork repeats by itself are not recorded. Return nothing."
   (when (and (simulation-past simulation)
              (not (continues-in-forks-p))
              ;; In these phases only code that a fork runs, too, can act.

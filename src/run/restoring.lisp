@@ -190,8 +190,7 @@ of each number, or NIL for an external object."
      t)))
 
 (defun process-contents-line (line loader)
-  "Store the contents in LINE, a list (object content...), in the object. The object must be the
-next object of LOADER."
+  "Store the contents in LINE, (object content...), in the object, which must be LOADER's next."
   (let* ((number (loader-next loader))
          (object (and (< number (length (loader-objects loader)))
                       (aref (loader-objects loader) number))))

@@ -167,9 +167,8 @@ it: the binding, the global value or both."
     (move-errors new old)))
 
 (defun replace-owned-run (new old then)
-  "Replace OLD, which this thread owns, by NEW; then call THEN. Continuations of OLD are called
-because OLD is over. Non-local exits from continuations and interrupts of this thread do not stop
-the replacement."
+  "Replace OLD, which this thread owns, by NEW; then call THEN. Continuations of OLD are called, as
+OLD is over. Non-local exits from continuations and interrupts of this thread do not stop this."
   (check-not-over old 'rewind)
   (let ((from (simulation-tick old)))
     ;; A thread waiting for custody gets it once NEW has replaced OLD.

@@ -124,9 +124,8 @@ the current simulation. Errors name OPERATOR."
 
 (addition status)
 (defun status (&optional robot)
-  "Return the state of ROBOT, which the prompt command STATUS prints, as a property list of plain
-data. ROBOT is a robot or its name, by default the first robot of the current simulation. The
-properties are:
+  "Return the state of ROBOT, which the prompt command STATUS prints, as a plist of plain data.
+ROBOT is a robot or its name, by default the first of the current simulation. The properties:
 - :ROBOT, :MAP, :TICK
 - :POSITION, :LAST-MOVE and :ESTIMATED-LAST-MOVE, lists (x y) in metres
 - :ANGLE in radians, :SPEED in metres and :TURN-ANGLE in radians a tick

@@ -30,11 +30,10 @@ for k (Lentz's method as in Thompson and Barnett 1986)."
         until (= sum old)
         finally (return sum)))
 
-;;; Factorials occur here only in probabilities of counts, where most of them cancels against
-;;; powers. So log-gamma is not computed: for counts of a million, it would leave a relative error
-;;; of 1e-9. Only its difference from Stirling's formula is computed, and the deviance of a count
-;;; from its expectation. Both are small and exact (Loader 2000, "Fast and accurate computation of
-;;; binomial probabilities").
+;;; Factorials occur only in probabilities of counts, where most cancels against powers. Log-gamma
+;;; is not computed: for counts of a million, its relative error would be 1e-9. Only its difference
+;;; from Stirling's formula is computed, and a count's deviance from its expectation. Both are small
+;;; and exact (Loader 2000, "Fast and accurate computation of binomial probabilities").
 
 (defun stirling-error (x)
   "Return the error of Stirling's formula, log gamma(X+1) - ((X+1/2) log X - X + log sqrt(2 pi)),

@@ -4,14 +4,13 @@
 
 (addition mcnemar-test)
 (defun mcnemar-test (first second)
-  "Return the p value of McNemar's exact test of the hypothesis that two methods are equally good.
-The two methods have made the same trials. FIRST is the number of trials in which only the first
-method succeeded, SECOND the number in which only the second succeeded. Trials with equal outcomes
-do not count. The test never rejects a true hypothesis more often than its level says (McNemar 1947;
-Fagerland, Lydersen and Laake 2013, \"The McNemar test for binary matched-pairs data\"). The second
-value is the mid-p value of that paper, which is less conservative and usually more exact. The p
-value and the mid-p value are 1 without trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are
-integers from 0 to 1e9."
+  "Return the p value of McNemar's exact test of the hypothesis that two methods, tried in the same
+trials, are equally good. FIRST is the number of trials in which only the first succeeded, SECOND
+the number in which only the second did. Trials with equal outcomes do not count. The test never
+rejects a true hypothesis more often than its level says (McNemar 1947; Fagerland, Lydersen and
+Laake 2013, \"The McNemar test for binary matched-pairs data\"). The second value is the mid-p value
+of that paper, which is less conservative and usually more exact. The p value and the mid-p value
+are 1 without trials. Signals WRONG-ARGUMENT unless FIRST and SECOND are integers from 0 to 1e9."
   (check-count mcnemar-test first)
   (check-count mcnemar-test second)
   (let* ((trials (+ first second)) (fewer (min first second))

@@ -7,10 +7,9 @@
 (addition ask)
 (defun ask (object function)
   "Call FUNCTION, without arguments, while the world of OBJECT, a simulation or robot, stands still.
-If this thread or no thread owns the world, call FUNCTION at once; else the thread that owns the
-world calls FUNCTION between two ticks. Return the values of FUNCTION. Errors of FUNCTION are
-signalled in this thread. Signals MISUSE inside a tick of another world, and if FUNCTION is
-aborted."
+If this thread or no thread owns the world, call FUNCTION at once; else the owning thread calls
+FUNCTION between two ticks. Return the values of FUNCTION. Errors of FUNCTION are signalled in this
+thread. Signals MISUSE inside a tick of another world, and if FUNCTION is aborted."
   (let ((custody (timeline-custody (timeline-of object))))
     (call-with-custody custody function (lambda () (ask-owner custody function)))))
 

@@ -4,11 +4,10 @@
 
 (export '(answer-questions call-with-custody has-custody-p answer-own-questions))
 
-;;; One thread at a time owns a world and the successive timelines of its runs: it has custody. It
-;;; paces the world, or has custody while it passes ticks or changes the world. A thread takes
-;;; custody if no other has it, and gives it up or hands it over to another thread. A thread that
-;;; cannot get custody leaves a question, a function. The owner calls that between two ticks, or
-;;; before it gives custody up.
+;;; One thread at a time owns a world and the timelines of its runs: it has custody. It paces the
+;;; world, or has custody while it passes ticks or changes it. A thread takes custody if no other
+;;; has it, and gives it up or hands it over to another. A thread that cannot get custody leaves a
+;;; question, a function that the owner calls between two ticks or before it gives custody up.
 
 (define-record (custody (:constructor make-custody ()))
   "The record of the thread that owns a world."

@@ -185,9 +185,8 @@ replace the run. Return true if the run was live and no thread had stopped it."
   (if-paced (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) :replaced t)))
 
 (defun stop-pacing (timeline)
-  "End the thread that paces TIMELINE after its current tick. If that is another thread, wait until
-it has ended. Return TIMELINE. Signals MISUSE if the thread is in users' code that cannot be
-interrupted."
+  "End the thread that paces TIMELINE after its current tick. If it is another thread, wait for its
+end. Return TIMELINE. Signals MISUSE if the thread is in users' code that cannot be interrupted."
   (if-paced (pacing timeline) (stop-pacing-thread pacing))
   timeline)
 

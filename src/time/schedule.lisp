@@ -116,8 +116,7 @@ Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
 (public schedule)
 (define-user-macro schedule ((resource &key priority interrupt (when t when-p) timeout timer)
                     &body body)
-  "Schedule an event that runs BODY on RESOURCE (NIL: none) in the next tick, or TIMER ticks from
-now.
+  "Schedule an event that runs BODY on RESOURCE (NIL: none) in the next tick or in TIMER ticks.
 - :PRIORITY is an integer, default 0. If the resource already has an event, the event with the
 higher priority stays. Of events with equal priorities, the first stays.
 - The form INTERRUPT is evaluated if this event loses.
@@ -140,9 +139,8 @@ Returns nothing (manual 3.8). See reading 7."
 
 (defgeneric release-resource (resource timeline)
   (:documentation
-   "Interrupt the event that is pending on RESOURCE, and the background activities of RESOURCE. The
-thread that owns the world calls this function inside a tick. A layer with background activities
-adds a method.")
+   "Interrupt the event pending on RESOURCE, and its background activities. The thread that owns the
+world calls this function inside a tick. A layer with background activities adds a method.")
   (:method (resource timeline)
     (let* ((agenda (timeline-agenda timeline))
            (event (pending-event agenda resource)))

@@ -38,8 +38,7 @@
    (inbox '() t "the requests that wait for the next tick, newest first" :export)
    (notifications '() list "the calls due at the end of the tick: lists (function argument...), the
 newest first")
-   (due-notifications '() list "the calls that are being made at the end of the tick, the oldest
-first"))
+   (due-notifications '() list "the calls being made at the end of the tick, oldest first"))
   (:link
    (phase 0 fixnum
           "the number of phases of the current tick that have begun; 0 between ticks" :export)
@@ -57,8 +56,7 @@ first"))
          "why the run is over, a sentence without full stop; NIL if the run is not over" :export)
    (tick-dice (make-tick-dice) tick-dice
               "the dice of CL:RANDOM for users' code that changes the world" :export)
-   (custody (make-custody) custody "the custody, which records the thread that owns the timeline and
-its world" :export)
+   (custody (make-custody) custody "the record of who owns the timeline and its world" :export)
    (pacing nil t "the pacing of the timeline, or NIL if it never ran live" :export)))
 
 (setf (documentation 'make-timeline 'function)
@@ -165,9 +163,8 @@ secluded from that run, or works in a fork of another run in the same map."
 ;;; Requests.
 
 (defun post (request object)
-  "Post REQUEST, to be performed at the start of the next tick of the run of OBJECT, after requests
-that were posted before. Any thread may post requests. Return nothing. Signals MISUSE if the run is
-over (reading 219)."
+  "Post REQUEST, to be performed at the start of the next tick of OBJECT's run, after earlier
+requests. Any thread may do so. Return nothing. Signals MISUSE if the run is over (reading 219)."
   (let ((timeline (timeline-of object)))
     (check-own-run timeline)
     (check-not-over timeline)

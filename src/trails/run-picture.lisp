@@ -158,8 +158,7 @@ and the other MOMENTS. If PART is NIL, return MOMENTS."
         moments)))
 
 (defun spots-and-notes-in (part moments limit several-p reach)
-  "Return the values of SPOTS-AND-NOTES for the MOMENTS in PART, with an additional note that counts
-the other moments."
+  "Return the values of SPOTS-AND-NOTES for the MOMENTS in PART; a last note counts the others."
   (multiple-value-bind (moments others) (moments-in-part part moments)
     (multiple-value-bind (spots notes) (spots-and-notes moments limit several-p reach)
       (values spots

@@ -9,15 +9,13 @@
   (trial 0 integer "the number of the trial of the way" :export)
   (outcome "" string "the outcome of the trial: \"success\", \"failure\", \"limit\" or
 \"error\"" :export)
-  (pieces '() list "the pieces of the way, in order: lists of points (x . y) without
-jumps" :export))
+  (pieces '() list "the way's pieces, in order: lists of points (x . y) without jumps" :export))
 
 (define-record (trail (:constructor make-trail (robot)))
   "The positions of ROBOT from the beginning of a run up to now."
   (robot nil robot)
   (placements nil (or null fixnum)
-              "how many times the robot had been put somewhere when its last position was recorded,
-or NIL" :writable)
+              "the count of the robot's placements at its last recorded position, or NIL" :writable)
   (pieces '() list "the pieces, like those of a way, but the latest piece first and in each piece
 the latest point first" :writable))
 
@@ -48,9 +46,8 @@ without a trail gets one at the front. Return the list."
   (reverse (mapcar #'reverse (trail-pieces trail))))
 
 (defun trails-to-ways (trails trial outcome)
-  "Return the ways of the trial TRIAL, which ended with OUTCOME, from TRAILS, a value of
-UPDATE-TRAILS. A trial without trails, which failed at once, has one way without points, so that the
-trial is counted."
+  "Return the ways of TRIAL, which ended with OUTCOME, from TRAILS, a value of UPDATE-TRAILS. A
+trial without trails, which failed at once, has one way without points, so that it is counted."
   (if trails
       (loop for trail in (reverse trails) collect (make-way trial outcome
                                                           (trail-pieces-in-order trail)))
@@ -137,8 +134,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
   (check-argument save-trajectory file
                   (and (typep file '(or string pathname)) (not (wildcard-name-p file))
                        (pathname-name file))
-                  "the name of a file, such as \"run.csv\"; in the name, write \\\\ before each * ?
-and [")
+                  "the name of a file, such as \"run.csv\"; write \\\\ before each * ? and [")
   (check-argument save-trajectory every (whole-p every 1)
                   "a whole number of ticks, from 1 to 1e9")
   (checked-end-tick 'save-trajectory journal until)

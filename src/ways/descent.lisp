@@ -42,9 +42,8 @@ true for a line that needs only free cells, and no distance from walls."
 (declaim-final line)
 
 (defun measure-line (line cells columns leaving)
-  "Compute and store the cost of LINE: +BARRED+ if LINE is not free or costs more than its limit.
-CELLS are the cells of a terrain or field, COLUMNS in each row. LEAVING is true if LINE may begin
-near a wall."
+  "Compute and store LINE's cost: +BARRED+ if LINE is not free or costs more than its limit. CELLS
+are those of a terrain or field, COLUMNS a row. LEAVING is true if LINE may begin near a wall."
   (declare #.*hot* (type line line) (type amounts cells) (type (integer 0 40000) columns))
   (let* ((u (* 2 (line-x line))) (v (* 2 (line-y line)))
          (du (- (* 2 (line-end-x line)) u)) (dv (- (* 2 (line-end-y line)) v))

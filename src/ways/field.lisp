@@ -71,10 +71,9 @@
 ;;;; Crossing the square between the middles of four cells
 
 ;;; Ways run between the middles of cells, the nodes. Four of them are the corners of a square. A
-;;; metre in it costs what it does in the most expensive of the four cells; a metre on the line
-;;; between two neighbouring nodes, in the more expensive one. So there is no way into a square with
-;;; a wall at a corner: ways keep half a metre off all walls, and go through the middle of a doorway
-;;; that is one cell wide.
+;;; metre in it costs what it does in the most expensive of the four cells; a metre between two
+;;; neighbouring nodes, in the more expensive one. So no way enters a square with a wall at a
+;;; corner: ways keep half a metre off all walls, and go through the middle of a one-cell doorway.
 ;;;
 ;;; From a node a way may cross a square to any point of the two sides opposite. The cost
 ;;; to the goal is known for the corners, and interpolated linearly between them. That is

@@ -25,8 +25,7 @@
    (count 0 fixnum "how many members the row has")
    (dead '() list "members that have left since the last tick"))
   (:scratch
-   (outlook nil (or null outlook) "the results of the next trials, drawn ahead in a large group, or
-NIL"))
+   (outlook nil (or null outlook) "the next trials' results, drawn ahead in a large group, or NIL"))
   (:link
    (origin (make-origin) origin "the attachment that is running, for errors")))
 

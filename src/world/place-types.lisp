@@ -143,9 +143,8 @@ be set. X and Y are the upper left corner of the cell in pixels" :writable :addi
 
 (addition place-directions)
 (defun place-directions (place)
-  "Return the two canonical directions of PLACE, in radians: the values of its type's :directions
-form, or its basic direction and the opposite direction. Errors in the form are queued as error
-messages (reading 72)."
+  "Return PLACE's two canonical directions in radians: the values of its type's :directions form, or
+its basic direction and the opposite. Errors in the form are queued as messages (reading 72)."
   (let* ((basic (place-canonical-dir place))
          (type (place-type place))
          (function (place-type-directions type))
@@ -250,9 +249,8 @@ MALFORMED-DEFINITION. Return the name."
 
 (defun define-place-type (name &key (confusion 0) invisible rules checker directions graphics
                                  before (key 0))
-  "Define the place type NAME. DEF-PLACE-TYPE expands to a call of this function. CHECKER and
-DIRECTIONS are functions of a cell. KEY is a digest of the definition, for the key of a map's cache.
-Return NAME."
+  "Define the place type NAME. DEF-PLACE-TYPE expands to a call of this. CHECKER and DIRECTIONS are
+functions of a cell. KEY is a digest of the definition, for a map's cache key. Return NAME."
   (let* ((definition (definition-title "def-place-type" name))
          (old (definition-to-replace name *place-types*))
          (next (type-to-precede definition before))

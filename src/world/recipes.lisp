@@ -5,9 +5,8 @@
 (export '(make-world reset-world recipe make-recipe destroyed-thing))
 
 ;;; A recipe is fixed when it is written: a prototype's attributes and contents are copied then, so
-;;; later changes of the prototype do not affect worlds made from the recipe. Contents are made
-;;; before their container, each with the next serial number of the world; prototypes take none.
-;;; Manual 5.1 and 5.3.
+;;; later changes do not affect worlds made from it. Contents are made before their container, each
+;;; with the next serial number of the world; prototypes take none. Manual 5.1 and 5.3.
 
 (define-record (recipe (:constructor make-recipe (name attributes contents &key kickers x y)))
   "A recipe for a thing with NAME, ATTRIBUTES, CONTENTS and KICKERS; in a map's recipe, at X, Y."

@@ -45,10 +45,9 @@ MAP, else the resident world of MAP. If MAP is a world, return MAP."
 
 (addition find-things)
 (defun find-things (name &optional world)
-  "Return a list of the things named NAME (a symbol or string, perhaps \"PEN#2\", or a serial
-number) in WORLD, in order of creation. WORLD may be a map. By default, search the world of the
-current simulation or, without a simulation, the resident worlds of all maps. Signals
-WRONG-ARGUMENT."
+  "Return the things named NAME (a symbol or string, perhaps \"PEN#2\", or a serial number) in
+WORLD, in order of creation. WORLD may be a map. By default, search the world of the current
+simulation or, without one, the resident worlds of all maps. Signals WRONG-ARGUMENT."
   (check-argument find-things name (typep name '(or symbol string integer))
                   "a symbol, a string such as \"PEN#2\", or a serial number")
   (loop for each in (worlds-to-search world)

@@ -42,9 +42,8 @@
 (addition defsubstance)
 (define-user-macro defsubstance (&whole form name &optional parameter documentation
                                  &environment environment)
-  "Define the type of substance NAME, a symbol: cameras see things whose :substance is NAME as
-PARAMETER, a number. The string DOCUMENTATION describes it. An addition to manual 2.1 and 3.3.
-Return the name."
+  "Define the type of substance NAME, a symbol: cameras see things of :substance NAME as PARAMETER,
+a number. The string DOCUMENTATION describes it. An addition to manual 2.1 and 3.3. Return NAME."
   (expand-definition form environment
                      (lambda ()
                        (check-name "defsubstance" name "substance")

@@ -36,8 +36,7 @@ out of it."))
   (:documentation "Return the name of LOCATION for messages, a symbol or string."))
 
 (defgeneric location-phrase (location)
-  (:documentation "Return the name of LOCATION for the middle of a sentence, with the robot that
-LOCATION belongs to.")
+  (:documentation "Return LOCATION's name for the middle of a sentence, with its robot, if any.")
   (:method (location) (location-name location)))
 
 (addition remaining-capacity)
@@ -49,9 +48,8 @@ the sizes of the things directly in it (a double-float, at least 0). Signals WRO
 
 ;;; The attributes that the simulator uses itself (manual, table 3.3). The manual gives the sensing
 ;;; parameters of :color and :size and the supporters of :capacity. The rest are our choice. Whether
-;;; a thing blocks the way or the view, or is closed, is plain to see if you look for it. Weight and
-;;; capacity are guesses at a distance. A substance that is a symbol is read right with probability
-;;; :success.
+;;; a thing blocks the way or the view, or is closed, is plain to see if you look. Weight and
+;;; capacity are guesses from afar. A symbol as substance is read right with probability :success.
 
 ;; As reading 121 says.
 (defattribute :obsmove (t nil)
@@ -82,8 +80,7 @@ the sizes of the things directly in it (a double-float, at least 0). Signals WRO
 (define-kind (thing :constructor (%make-thing (name serial world)))
     "An object in a world, or a prototype from which such objects are made."
   (:fixed
-   (name nil symbol "the symbol that names the thing; other things may have the same
-name" :addition)
+   (name nil symbol "the symbol that names the thing, perhaps others, too" :addition)
    (serial 0 fixnum "the thing's number in its world, from 1; 0 for prototypes" :addition)
    (world nil t "the world that the thing is in, or NIL for a prototype" :near :addition))
   (:state

@@ -89,8 +89,7 @@ at OPPOSITE, and at the last corner (readings 55, 56)."
   :cells (apply #'draw-wall map start end type parameters))
 
 (define-map-clause rect (map start end type &rest parameters)
-    "(rect (x0 y0) (x1 y1) substance parameter [three parameters more]), with numbers from -1e15
-to 1e15"
+    "(rect (x0 y0) (x1 y1) substance parameter [three more]), with numbers from -1e15 to 1e15"
   :check (and (number-pair-p start) (number-pair-p end) (valid-material-p type parameters '(1 4)))
   :corners (list start end)
   :substance type

@@ -16,8 +16,7 @@
   (:fixed
    (map nil map "the map that the world is of" :addition)
    (robots '() list "the list of the world's robots; the layer above keeps it" :part :addition)
-   (kicker-generation 0 fixnum "the value of *KICKER-GENERATION* when the kicker groups were
-made" :export)
+   (kicker-generation 0 fixnum "the *KICKER-GENERATION* of the kicker groups" :export)
    (timeline nil t "the timeline of the world, once there is one; the layer above keeps it" :export)
    (move-watchers '() list
                   "the list of functions (thing old-location new-location) called after a thing has
@@ -77,8 +76,7 @@ in the resident world of each map.")
 ;;; Things.
 
 (defmacro do-things ((thing world) &body body)
-  "Run BODY with THING bound to each living thing in WORLD, in order of creation. Things that BODY
-makes are left out."
+  "Run BODY for each living THING in WORLD, in order of creation, except things that BODY makes."
   `(call-with-things (lambda (,thing) ,@body) ,world))
 
 (defun call-with-things (function world)

@@ -212,14 +212,13 @@
 (addition comparison-verdicts)
 (defun comparison-verdicts (comparison)
   "Return the result of COMPARISON as a list of sentences. For two versions, the first sentence says
-how many conditions got better or worse, and how many trials are identical. The next sentences are
-about all conditions together, if there are several, and about each pair. They say which side
-succeeds more often, takes more ticks and so on, with p, both rates or means, and the difference
-with its 95 % interval. A difference is reported if p, corrected for all tests of COMPARISON (Holm),
-is at most .05. Otherwise the sentence says how large the difference can be, with the confidence of
-the interval. If the interval leaves out 0, the sentence says why p decides, and how many seeds are
-needed for so many tests. Tests over all conditions are corrected separately. Each interval is for
-one difference alone."
+how many conditions got better or worse, and how many trials are identical. The next sentences,
+about all conditions together, if there are several, and each pair, say which side succeeds more
+often, takes more ticks and so on, with p, both rates or means, and the difference with its 95 %
+interval. A difference is reported if p, corrected for all tests (Holm), is at most .05. Otherwise
+the sentence says how large the difference can be, with the interval's confidence. If the interval
+leaves out 0, the sentence says why p decides, and how many seeds are needed for so many tests.
+Tests over all conditions are corrected separately. Each interval is for one difference alone."
   (check-argument comparison-verdicts comparison (comparison-p comparison) "a comparison")
   (let ((all (loop for contrast in (append (comparison-overall comparison)
                                            (comparison-contrasts comparison))

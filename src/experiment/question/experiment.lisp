@@ -140,9 +140,8 @@ PARAMETERS are lists (name value) for all conditions."
 
 (addition find-condition)
 (defun find-condition (experiment designator)
-  "Return the condition that DESIGNATOR means in EXPERIMENT, an experiment or its name. DESIGNATOR
-is a condition, its number, from 1, its name, or an unambiguous part of its name. Signals
-UNKNOWN-NAME."
+  "Return the condition in EXPERIMENT (an experiment or its name) that DESIGNATOR means: a
+condition, its number, from 1, its name, or an unambiguous part of its name. Signals UNKNOWN-NAME."
   (let* ((conditions (experiment-conditions (find-experiment experiment)))
          (text (if (typep designator '(or symbol string)) (string designator) ""))
          (named (and (string/= text "") (filter-by-name text conditions #'condition-name))))

@@ -130,8 +130,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
 ;;; Comparison with the table.
 
 (defun row-of-trial (experiment condition trial directory)
-  "Return the texts of the row in DIRECTORY for TRIAL of CONDITION of EXPERIMENT. Signals MISUSE if
-there is no such row."
+  "Return the texts of the row of TRIAL of CONDITION of EXPERIMENT in DIRECTORY, or signal MISUSE."
   (let ((file (rows-file (existing-table-directory directory)))
         (place (1+ (seed-column (columns experiment))))
         (number (value-text trial)))

@@ -81,8 +81,7 @@ is true, TEXTS are not wrapped."
          (mapcar #'text-column-cells columns)))
 
 (defun write-text-table (key columns stream)
-  "Write KEY, columns that identify rows, and COLUMNS to STREAM, in as many blocks as needed, each
-with KEY."
+  "Write COLUMNS to STREAM, in as many blocks as needed, each with KEY, columns that identify rows."
   (loop for (block . more) on (blocks key columns)
         do (write-block block stream)
            (when more (terpri stream))))

@@ -125,8 +125,7 @@ much longer than other trials took; else NIL."
 (defvar *progress* nil "The progress of the experiment that runs in this thread, or NIL.")
 
 (defun current-slow-trial-text ()
-  "Return a text on the trial that has run longest in this thread's experiment, if the trial has run
-for a long time; else NIL."
+  "Return a text on the longest-running trial of this thread's experiment if it is slow, else NIL."
   (and *progress* (slow-trial-text *progress*)))
 
 (defun report-progress (progress &optional last)

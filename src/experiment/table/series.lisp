@@ -154,8 +154,7 @@ column. The number is 0 if the row has no digest, as after a timeout or the end 
                   (expected-line-count texts (seed-column (series-index-columns index)))))
 
 (defun index-existing-series (experiment directory)
-  "Return the index of the series of EXPERIMENT in DIRECTORY; NIL if EXPERIMENT records no series.
-Signals DAMAGED-TABLE."
+  "Return the index of EXPERIMENT's series in DIRECTORY; NIL if it has none. Signals DAMAGED-TABLE."
   (and (experiment-series experiment)
        (index-series (remove-if-not #'existing-path (list (series-file directory)))
                      (series-columns experiment))))
