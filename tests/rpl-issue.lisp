@@ -296,3 +296,21 @@ endless repetition."
                   (rpl:pulse alarm)
                   (rpl:wait-for driver:robot-stopped*)
                   (value-in driver:robot-movement-error*))))))))
+
+(defun turn-returning (value)
+  (driver:rpl-robot-turn 1)
+  value)
+
+(test issue.who-takes-the-robot-waits-whatever-its-step-returned
+  (dolist (value '(t nil))
+    (with-fitter (:clean t)
+      (is (equal '(:interrupt)
+                 (run-as-plan
+                   (let ((alarm (rpl:create-fluent 'alarm)) (errors '()))
+                     (rpl:with-policy (rpl:seq (rpl:wait-for alarm)
+                                               (turn-returning value)
+                                               (push (value-in driver:robot-movement-error*) errors))
+                       (driver:rpl-robot-turn 2)
+                       (rpl:pulse alarm)
+                       (rpl:wait-for driver:robot-stopped*)
+                       errors))))))))

@@ -48,7 +48,8 @@ the running task wait until then."
     (when notice
       (park task notice)
       (setf (task-frame task) frame
-            (task-value task) value))))
+            (task-value task) value)
+      t)))
 
 (defun deliver-notice (notice)
   (let ((sender (notice-sender notice)))

@@ -65,8 +65,8 @@ Signals WRONG-ARGUMENT."
   (setf (journal-full-p journal) t
         (journal-end journal) tick)
   (queue-notable-warning
-   (format nil "The journal is full: it has ~D entries and ends at tick ~D. The run goes on, but can ~
-                be repeated only up to that tick; see *JOURNAL-LIMIT*."
+   (format nil "The journal is full: it has ~D entries and ends at tick ~D. The run goes on, but ~
+                can be repeated only up to that tick; see *JOURNAL-LIMIT*."
            (journal-length journal) tick)))
 
 (defun room-left-p (journal)
