@@ -113,18 +113,18 @@
   (wall (0 7) (0 12) slate 30))
 
 (defun cells-by-walks (world x y angle)
-  "Return what OCCUPIED-CELLS finds with 50 rays over a right angle, walked by WALK-GRID."
+  "Return what OCCUPIED-CELLS finds with 50 rays over a right angle, walked by WALK-CELLS-ON-LINE."
   (let* ((flags (world:world-flags world)) (map (world:world-map world)) (found '()))
     (labels ((visit (index)
                (when (logtest world:+occupied+ (aref flags index)) (pushnew index found))
                (logtest world:+opaque+ (aref flags index)))
              (walk (x y dx dy)
                (let* ((stopped nil)
-                      (at (world:walk-grid (lambda (index at column)
-                                             (declare (ignore at column))
-                                             (setf stopped (visit index)))
-                                           (world:map-width map) (world:map-height map)
-                                           x y dx dy world:+no-limit+)))
+                      (at (world:walk-cells-on-line (lambda (index at column)
+                                                      (declare (ignore at column))
+                                                      (setf stopped (visit index)))
+                                                    (world:map-width map) (world:map-height map)
+                                                    x y dx dy world:+no-limit+)))
                  (when stopped
                    (go-past (+ x (* dx at)) (+ y (* dy at)) dx dy))))
              (go-past (x y dx dy)

@@ -49,7 +49,7 @@
     (let ((thread (run:simulation-thread time:*simulation*)))
       (sb-thread:terminate-thread thread)
       (is-true (message-with "ended from outside"))
-      (is-false (run:simulation-ticking-p time:*simulation*))
+      (is-false (run:simulation-inside-tick-p time:*simulation*))
       (run:simulator 'shrew :rate :free :display nil)
       (is-true (goes-on-p (live-shrew))))))
 

@@ -202,7 +202,7 @@
 (defun cells-on-line (x y dx dy &rest arguments)
   "Return what is met by the line from (X,Y) in a grid of 4 by 3: lists (index distance column)."
   (let ((met '()))
-    (values (apply #'world:walk-grid
+    (values (apply #'world:walk-cells-on-line
                    (lambda (index at column)
                      (push (list index at column) met)
                      nil)

@@ -98,7 +98,7 @@ again. Do nothing if SESSION has lost its user."
 
 (defun handle-message (session simulation)
   "Show a new message of SIMULATION in SESSION, now or at the end of the tick."
-  (cond ((not (simulation-ticking-p simulation)) (show-messages session))
+  (cond ((not (simulation-inside-tick-p simulation)) (show-messages session))
         ;; Its tick ends when a user says how to continue, who may need these messages.
         ((users-code-in-debugger-p simulation) (show-messages session))
         ((or (not (live-p simulation)) (eq (simulation-thread simulation) (current-thread)))
@@ -107,7 +107,7 @@ again. Do nothing if SESSION has lost its user."
            (notify-later (timeline-of simulation) (lambda () (show-messages session)))))
         (t (setf (session-news-p session) t)
            ;; The tick may have ended just now, without this message.
-           (unless (simulation-ticking-p simulation) (show-if-pending session)))))
+           (unless (simulation-inside-tick-p simulation) (show-if-pending session)))))
 
 (defun show-if-pending (session)
   "At the end of a tick, show the messages that SESSION has not shown yet."

@@ -25,7 +25,7 @@
   (check-fail form)
   (check-failure-class form scope)
   (if (some (lambda (argument) (suspends-p argument scope)) arguments)
-      (hoisted-code form scope)
+      (code-with-hoisted-parts form scope)
       `(make-failing :form ',(form-as-written form)
                       :arguments ,(value-lambda `(list ,@arguments) scope))))
 

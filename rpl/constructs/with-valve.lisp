@@ -65,7 +65,7 @@ If tasks wait for each other's valves, an error says so (manual D; priorities ar
    (when memory (release-valves (shiftf memory nil)))
    nil))
 
-(defun split-valves (valves)
+(defun valves-and-priority (valves)
   "Return the list of the elements of VALVES before :priority, and the form after :priority."
   (let ((rest (member-if #'keywordp valves)))
     (unless (typep rest '(or null (cons (eql :priority) (cons t null))))
@@ -78,6 +78,6 @@ may follow. The task takes all the valves together, when no other task owns any 
 order in which tasks name the valves does not matter. Otherwise do as WITH-VALVE."
   (:like with-valve)
   (:arguments &rest valves)
-  (:parts (request function (multiple-value-bind (valves priority) (split-valves valves)
+  (:parts (request function (multiple-value-bind (valves priority) (valves-and-priority valves)
                               (claim-lambda priority valves scope)))
           (body node (body-code body scope))))

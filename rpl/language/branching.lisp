@@ -89,7 +89,7 @@ Policies can run between steps. In ordinary Lisp, SEQ is PROGN (manual D.2)."
       (body-code (loop for (variable value) on pairs by #'cddr
                        collect (note-plan-text `(setq ,variable ,value)))
                  scope)
-      (hoisted-code form scope 2)))
+      (code-with-hoisted-parts form scope 2)))
 
 ;;;; Choices
 

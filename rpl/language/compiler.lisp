@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(condition-lambda awaited-lambda value-lambda define-plan-form hoisted-code plan-code
+(export '(condition-lambda awaited-lambda value-lambda define-plan-form code-with-hoisted-parts
+                           plan-code
           leaf-code-or-reject suspends-p))
 
 ;;; Where the plan's own text says so, conditions read fluents by value and operators are lifted.
@@ -204,7 +205,7 @@ SUSPENDS says whether the operator makes a task wait: see SUSPENSION."
 
 ;;; An expression of which a part that Lisp is to use makes the task wait.
 
-(defun hoisted-code (form scope &optional (fixed 1))
+(defun code-with-hoisted-parts (form scope &optional (fixed 1))
   "Return code for FORM, whose first FIXED elements stay in place. Other elements that suspend are
 bound to variables before FORM. So are all elements to their left, to keep the order of evaluation."
   (let* ((parts (nthcdr fixed form))
@@ -226,7 +227,7 @@ bound to variables before FORM. So are all elements to their left, to keep the o
 (defun function-form-code (form scope)
   "Return code for FORM, a call of an operator without a special meaning in plans."
   (cond ((some (lambda (argument) (suspends-p argument scope)) (rest form))
-         (hoisted-code form scope))
+         (code-with-hoisted-parts form scope))
         ((call-suspension form scope (scope-environment scope)) (call-code form scope))
         (t (leaf-code form scope))))
 
@@ -267,7 +268,7 @@ bound to variables before FORM. So are all elements to their left, to keep the o
           ((special-operator-p (first form)) (leaf-code-or-reject form scope))
           ((operator-in-p form *waking-functions*)
            (if (some (lambda (argument) (suspends-p argument scope)) (rest form))
-               (hoisted-code form scope)
+               (code-with-hoisted-parts form scope)
                (leaf-code form scope)))
           (t (function-form-code form scope)))))
 

@@ -194,7 +194,7 @@ local plans there. The Lisp code in FORM is interpreted, as by MAKE-PLAN, or com
 true. Redefining the plan discards FORM. Return FORM. Signals the errors of TASK-CODE, and
 MALFORMED-DEFINITION. (From CRAM, where REPLACE-TASK-CODE takes a function.)"
   (let* ((node (find-tagged-node 'replace-task-code path))
-         (body (call-reporting-form
+         (body (call-blaming-form
                 (lambda ()
                   (with-plan-text (form)
                     (evaluate-form (plan-code form (scope-from-layers (tagged-layers node)))

@@ -43,7 +43,7 @@
           when (and (not (typep datum common)) (subtypep type common))
             return words)))
 
-(defun integer-range (type)
+(defun limits-of-integer-type (type)
   "For TYPE (integer LEAST GREATEST) or (mod N), return its least and greatest integers, and true. A
 missing limit is NIL. For other types, return NIL three times."
   (flet ((bound (bound step)
@@ -58,7 +58,7 @@ missing limit is NIL. For other types, return NIL three times."
 (defun integer-range-text (datum type)
   "Return a text that describes TYPE, a range of integers that does not include the integer DATUM.
 Return NIL if TYPE is no range of integers, or DATUM is no integer."
-  (multiple-value-bind (least greatest range-p) (integer-range type)
+  (multiple-value-bind (least greatest range-p) (limits-of-integer-type type)
     (cond ((not (and range-p (integerp datum))) nil)
           ((and least greatest (< greatest least)) "in range: nothing is there")
           ((and least greatest) (format nil "from ~D to ~D" least greatest))
@@ -193,7 +193,7 @@ FORMAT-BRIEFLY. An object that is already being printed does not count as circul
 
 (defun encoding-error-text (condition)
   "If CONDITION says that a file has an unexpected encoding, return a text that says so; else NIL."
-  (let ((encoding (undecodable-format condition)))
+  (let ((encoding (format-of-decoding-error condition)))
     (and encoding
          (format nil "it has bytes that are not ~A. Save the file in ~:*~A" encoding))))
 

@@ -74,7 +74,7 @@ NIL for other conditions. Works only while the file is open."
       (let ((cause (cause-of-reading-error condition)))
         (values (native-name (pathname stream))
                 (cond ((typep cause 'end-of-file) (line-of-form-being-read stream))
-                      ((undecodable-format cause) (line-of-next-character stream))
+                      ((format-of-decoding-error cause) (line-of-next-character stream))
                       (t (line-of-last-character stream))))))))
 
 (defun compiling-location ()

@@ -77,7 +77,7 @@ name of the function that it calls; else NIL. The layer that defines commands ha
 
 ;;; Variables.
 
-(defun definition-name-text (name)
+(defun definition-name-hint (name)
   "If the unbound symbol NAME names a definition, return a sentence that says so; else NIL."
   (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
@@ -108,7 +108,7 @@ name of the function that it calls; else NIL. The layer that defines commands ha
       (or (and code (format nil "Did you mean ~(~S~)?" code))
           (other-package-text name (lambda (symbol)
                                      (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol)))))
-          (definition-name-text name)
+          (definition-name-hint name)
           (let ((like (similar-variable name)))
             (and like (format nil "Did you mean ~A?" like)))))))
 

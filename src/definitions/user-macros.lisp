@@ -3,7 +3,7 @@
 (in-package :ars-magna.definitions)
 
 (export '(define-user-macro advice-on-use wrong-keyword-text test-advice body-advice user-macro-form
-          call-reporting-form variable-after-key))
+          call-blaming-form variable-after-key))
 
 ;;; Macros of DEFMACRO signal Lisp's own errors when they are misused, and do not end on circular
 ;;; lists. Those of DEFINE-USER-MACRO signal MALFORMED-DEFINITION for every mistake in the form, at
@@ -20,7 +20,7 @@ CONDITION is the error that occurred, or NIL."
                          (and condition
                               (abridged (string-right-trim "." (text-of-condition condition)))))))
 
-(defun call-reporting-form (function form)
+(defun call-blaming-form (function form)
   "Call FUNCTION, which expands FORM. Report errors other than ARS-MAGNA-ERROR as mistakes in FORM."
   (handler-case
       (call-reporting-mistakes function (lambda (condition)
@@ -82,7 +82,7 @@ MALFORMED-DEFINITION with USAGE, a form that shows what fits, if FORM does not f
   (when (or (endless-p form) (not (proper-list-p form)))
     (reject-use-of form "a form that is a proper list"))
   (warn-of-nisp-syntax form)
-  (call-reporting-form
+  (call-blaming-form
    (handler-case (funcall parse)
      (error ()
        (reject-use-of form (let ((*print-pretty* nil))

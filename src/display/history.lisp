@@ -109,10 +109,10 @@ index of a cell that returns true if the cell ends a ray."
   (loop for ray below count
         for angle = (+ first (* ray step))
         for dx = (cosine angle) and dy = (sine angle)
-        for end = (walk-grid (lambda (index at column)
-                               (declare (ignore at column))
-                               (funcall opaque-p index))
-                             (map-width map) (map-height map) x y dx dy +no-limit+)
+        for end = (walk-cells-on-line (lambda (index at column)
+                                        (declare (ignore at column))
+                                        (funcall opaque-p index))
+                                      (map-width map) (map-height map) x y dx dy +no-limit+)
         collect (+ x (* end dx)) collect (+ y (* end dy))))
 
 (defun rays-of-last-view (camera)

@@ -15,7 +15,7 @@ whose box overlaps the square. LARGE lists the entries whose box overlaps very m
   (squares (make-hash-table) :type hash-table :read-only t)
   (large '() :type list))
 
-(defun some-square (function box)
+(defun some-overlapped-square (function box)
   "Call FUNCTION with the number of each square that BOX overlaps, until FUNCTION returns true.
 Return the last value of FUNCTION."
   (destructuring-bind (first-column first-row last-column last-row)
@@ -33,10 +33,10 @@ Return the last value of FUNCTION."
   (let ((entry (cons box item)))
     (if (large-box-p box)
         (push entry (box-index-large index))
-        (some-square (lambda (square)
-                       (push entry (gethash square (box-index-squares index)))
-                       nil)
-                     box))))
+        (some-overlapped-square (lambda (square)
+                                  (push entry (gethash square (box-index-squares index)))
+                                  nil)
+                                box))))
 
 (defun index-boxes (boxes &optional (items boxes))
   (let ((index (make-box-index)))
@@ -48,7 +48,8 @@ Return the last value of FUNCTION."
            (loop for (other . item) in entries
                  when (and (overlap-p box other) (funcall test item)) return item)))
     (or (among (box-index-large index))
-        (some-square (lambda (square) (among (gethash square (box-index-squares index)))) box))))
+        (some-overlapped-square (lambda (square) (among (gethash square (box-index-squares index))))
+                                box))))
 
 (defun overlapping-items (box index)
   (let ((items '()))

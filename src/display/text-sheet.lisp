@@ -18,11 +18,11 @@
 (defun cells-along-ray (map opaque-p x y angle)
   "Return the indices of the cells of MAP that a camera at X, Y sees in direction ANGLE."
   (let ((indices '()))
-    (walk-grid (lambda (index at column)
-                 (declare (ignore at column))
-                 (push index indices)
-                 (funcall opaque-p index))
-               (map-width map) (map-height map) x y (cosine angle) (sine angle) +no-limit+)
+    (walk-cells-on-line (lambda (index at column)
+                          (declare (ignore at column))
+                          (push index indices)
+                          (funcall opaque-p index))
+                        (map-width map) (map-height map) x y (cosine angle) (sine angle) +no-limit+)
     indices))
 
 (defun cone-blocks (view robot camera)

@@ -264,7 +264,7 @@ Pair each row of the path with its column on the path, so that some rows change 
           do (setf (aref (cover-row-mate cover) row) column
                    (aref column-mate column) row))))
 
-(defun match-runs (cover)
+(defun find-maximum-matching (cover)
   "Find a maximum matching for COVER. Keep the layers of the last round, which found no path."
   (loop while (find-layers cover)
         do (dotimes (row (runs-count (cover-rows cover)))
@@ -286,7 +286,7 @@ Pair each row of the path with its column on the path, so that some rows change 
 the list NEEDED, and no cell with a state outside the list ALLOWED. A line is two ends (x y).
 Lines along rows come first, from the top, then lines along columns."
   (let* ((rows (find-runs grid allowed :rows)) (columns (find-runs grid allowed :columns))
-         (cover (match-runs (make-cover rows columns (states-mask needed))))
+         (cover (find-maximum-matching (make-cover rows columns (states-mask needed))))
          (taken (covering-columns cover)) (width (grid-width grid)))
     (append (loop for row below (runs-count rows)
                   when (minusp (aref (cover-layer cover) row)) collect (run-ends rows row width))

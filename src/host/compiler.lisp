@@ -5,7 +5,8 @@
 (export '(show-lambda-list nested-form-p edited-file error-context context-original-form
           compiler-error-p copy-source-location has-source-location-p call-at-source-location
           at-end-of-unit call-in-new-unit location-in-text compiler-location form-start
-          line-of-last-character line-of-next-character encapsulated-condition undecodable-format))
+          line-of-last-character line-of-next-character encapsulated-condition
+          format-of-decoding-error))
 
 ;;; SBCL records the location of each list that it has read to compile or load. COPY-SOURCE-LOCATION
 ;;; gives a list made from another list the location of that list, so that the compiler's notes
@@ -247,7 +248,7 @@ must not return NIL for STREAM."
   (and (internal-type-p condition :sb-int #:encapsulated-condition)
        (internal (:sb-int #:encapsulated-condition) condition)))
 
-(defun undecodable-format (condition)
+(defun format-of-decoding-error (condition)
   "If CONDITION says that a stream has bytes that are not valid text in its external format, return
 the name of that format, a string; else NIL."
   (when (internal-type-p condition :sb-int #:stream-decoding-error)

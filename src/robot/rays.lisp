@@ -2,11 +2,11 @@
 
 (in-package :ars-magna.robot)
 
-;;; A ray passes from cell to cell (WALK-GRID). A fan is a number of evenly spaced rays; each is
-;;; made from the one before by one rotation instead of a sine and a cosine. Only a list of the
-;;; cells found is allocated. Each cell is found once: during a scan, the flags of the cells found
-;;; carry +SEEN+ instead of +OCCUPIED+, so they are passed like empty ones. The cost depends on what
-;;; is seen, not on the size of the map or the number of things in it.
+;;; A ray passes from cell to cell (WALK-CELLS-ON-LINE). A fan is a number of evenly spaced rays;
+;;; each is made from the one before by one rotation instead of a sine and a cosine. Only a list of
+;;; the cells found is allocated. Each cell is found once: during a scan, the flags of the cells
+;;; found carry +SEEN+ instead of +OCCUPIED+, so they are passed like empty ones. The cost depends
+;;; on what is seen, not on the size of the map or the number of things in it.
 
 (define-constant +seen+ 128
   :documentation "The flag of a cell that the current scan has found; clear between scans.")
@@ -30,16 +30,16 @@ Return the point beyond the corner, as two values, or NIL if the ray has ended."
   (declare (type function visit) (type double-float x y dx dy))
   (let* ((flags (world-flags world)) (map (world-map world))
          (beyond-x nil) (beyond-y nil))
-    (walk-grid (lambda (index at column)
-                 (declare (ignore column))
-                 (let ((flag (aref flags index)))
-                   (or (and (logtest flag +opaque+)
-                            (setf (values beyond-x beyond-y)
-                                  (line-point-beyond-corner world +opaque+ (+ x (* dx at))
-                                                            (+ y (* dy at))
-                                                            dx dy)))
-                       (funcall visit index flag))))
-               (map-width map) (map-height map) x y dx dy +no-limit+)
+    (walk-cells-on-line (lambda (index at column)
+                          (declare (ignore column))
+                          (let ((flag (aref flags index)))
+                            (or (and (logtest flag +opaque+)
+                                     (setf (values beyond-x beyond-y)
+                                           (line-point-beyond-corner world +opaque+ (+ x (* dx at))
+                                                                     (+ y (* dy at))
+                                                                     dx dy)))
+                                (funcall visit index flag))))
+                        (map-width map) (map-height map) x y dx dy +no-limit+)
     (values beyond-x beyond-y)))
 
 (defun walk-ray (visit world x y dx dy)
@@ -93,9 +93,9 @@ computed before BODY runs for the previous one, so the processor can divide whil
                         ,next-per-y (/ (nonzero-component ,next-y)))
                   ,@body)))))
 
-;;; Scans are most of the cost of a robot that looks, so they have a separate walk, which meets
-;;; the same cells as WALK-GRID. Values common to the rays of a fan are computed once, and cells of
-;;; no interest cost one test. Without REACH, cells cost no count of borders.
+;;; Scans are most of the cost of a robot that looks, so they have a separate walk, which meets the
+;;; same cells as WALK-CELLS-ON-LINE. Values common to the rays of a fan are computed once, and
+;;; cells of no interest cost one test. Without REACH, cells cost no count of borders.
 
 (declaim (inline ray-axis-crossings walk-fan))
 (defun ray-axis-crossings (back per stride behind ahead left-behind left-ahead)

@@ -84,7 +84,7 @@ has no dice for CL:RANDOM, as in a live run, new dice are made."
 (defun fork-now (simulation continuations decisions)
   "Return a fork of SIMULATION, which is between ticks. For CONTINUATIONS and DECISIONS see
 FORK-OPTIONS. Signals MISUSE inside a tick, and CANNOT-FORK."
-  (when (simulation-ticking-p simulation)
+  (when (simulation-inside-tick-p simulation)
     (refuse-fork "a tick is under way. Fork the run between ticks, as in a continuation."))
   (when (eq simulation *simulation*) (record-settings simulation))
   (let ((copy (with-copier (copier :environment (environment-for-fork simulation)

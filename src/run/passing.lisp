@@ -14,7 +14,7 @@
 (defun check-can-pass-ticks (simulation)
   "Signal MISUSE if this thread is already passing ticks of SIMULATION."
   (when (and (owner-p simulation)
-             (or (simulation-ticking-p simulation)
+             (or (simulation-inside-tick-p simulation)
                  (timeline-passing-p (simulation-timeline simulation))))
     (reject-use "run-ticks: a tick is under way, as in a continuation, so no time can pass here. ~
                  Begin plans here by (begin-plan ...) instead of (run-plan ...); in a plan, wait ~

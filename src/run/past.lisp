@@ -62,7 +62,7 @@ REQUEST; ARGUMENTS are externalized and memorized."
   (make-act :request (simulation-tick simulation) (request-phase request) 0
             (repeated-by-forks-p request) operator arguments (request-asker request)))
 
-(defun change-act (simulation operator arguments)
+(defun make-change-act (simulation operator arguments)
   (let ((timeline (simulation-timeline simulation)))
     (make-act :change (simulation-tick simulation) (phase-in-this-thread timeline)
               (timeline-moments timeline)
@@ -77,7 +77,7 @@ for this call. ARGUMENTS are externalized unless OPERATOR is a function, see ACT
         ;; Any thread may act.
         (atomic-push (if request
                          (request-act request simulation operator arguments)
-                         (change-act simulation operator arguments))
+                         (make-change-act simulation operator arguments))
                      (past-acts past))
         (incf (past-count past))))))
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(simulation simulation-over simulation-agenda simulation-ticking-p simulation-thread
+(export '(simulation simulation-over simulation-agenda simulation-inside-tick-p simulation-thread
           latest-successor add-participant remove-participant headless-p end-simulation))
 
 (addition state-digest)
@@ -99,8 +99,8 @@ steps). See SET-THINKING."
   "Return the thread that passes the ticks of SIMULATION, or NIL if it is headless."
   (timeline-thread (simulation-timeline simulation)))
 
-(declaim (inline simulation-ticking-p))
-(defun simulation-ticking-p (simulation)
+(declaim (inline simulation-inside-tick-p))
+(defun simulation-inside-tick-p (simulation)
   "True inside a tick of SIMULATION, while its world changes."
   (timeline-ticking-p (simulation-timeline simulation)))
 

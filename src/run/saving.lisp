@@ -151,7 +151,7 @@ each of its threads has its own."
 (defun write-simulation (simulation file without-p)
   "Write SIMULATION, which is between ticks, to FILE. If WITHOUT-P is true, leave out the parts that
 cannot be saved. Return the truename of FILE."
-  (when (simulation-ticking-p simulation)
+  (when (simulation-inside-tick-p simulation)
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)
   (when (eq simulation *simulation*) (record-settings simulation))

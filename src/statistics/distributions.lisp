@@ -224,13 +224,13 @@ X up to about A/(A+B) (Didonato and Morris 1992: a continued fraction with posit
   "Return two values: the X for which INCOMPLETE-BETA I_X(A, B) is P, between 0 and 1; and 1 - X."
   (declare (type double-float p a b))
   (if (> p .5d0)
-      (multiple-value-bind (y x) (lower-beta-quantile (- 1 p) b a) (values x y))
-      (lower-beta-quantile p a b)))
+      (multiple-value-bind (y x) (beta-quantile-up-to-half (- 1 p) b a) (values x y))
+      (beta-quantile-up-to-half p a b)))
 
 ;;; As a function of the log odds of X, the logarithm of I_X is concave, and near log(1/2) where the
 ;;; odds are A : B. So Newton's method converges from there, for P up to 1/2.
 
-(defun lower-beta-quantile (p a b)
+(defun beta-quantile-up-to-half (p a b)
   (declare (type double-float p a b))
   (flet ((share (odds)
            (declare (type double-float odds))

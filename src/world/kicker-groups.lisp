@@ -137,7 +137,7 @@ cache. Return the index of the first success for which nothing was read."
          (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
          (gaps (outlook-gaps outlook))
          (index (group-skip group)) (batch (make-array +batch-size+))
-         (ahead (draw-gaps-ahead outlook index end (group-scale group) dice)))
+         (ahead (draw-next-gaps outlook index end (group-scale group) dice)))
     (declare (dynamic-extent batch) (type (unsigned-byte 50) index) (type outlook outlook))
     (dotimes (i (outlook-count outlook))
       (let ((place (* 3 index)))

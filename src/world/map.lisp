@@ -4,7 +4,8 @@
 
 (export '(map-replaced map-reference-form map-index point-index +wall+ +obsmove+ +obsview+
                        +occupied+
-          +opaque+ cell *maps* find-map-argument walk-grid cell-number grid-size +infinite-distance+
+          +opaque+ cell *maps* find-map-argument walk-cells-on-line cell-number grid-size
+          +infinite-distance+
           +no-limit+))
 
 ;;; A map is built once (see defmap.lisp) and shared, without locks, by all worlds made of it.
@@ -236,7 +237,7 @@ CELL than after it. WIDTH and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
   "A number of columns or rows of a grid."
   '(unsigned-byte 15))
 
-(declaim (inline cell-number border-spacing distance-to-border walk-grid))
+(declaim (inline cell-number border-spacing distance-to-border walk-cells-on-line))
 (defun cell-number (coordinate)
   "Return the column or row of a grid that contains COORDINATE, in metres."
   (the grid-size (truncate (the (double-float 0d0 32767d0) coordinate))))
@@ -253,7 +254,7 @@ CELL if BACK, else to the upper border."
   (declare (type double-float start) (type grid-size cell))
   (if back (- start cell) (- (1+ cell) start)))
 
-(defun walk-grid (visit width height x y dx dy reach &optional column-first)
+(defun walk-cells-on-line (visit width height x y dx dy reach &optional column-first)
   "Call VISIT with each cell, after the first, on the line from (X,Y) in direction (DX,DY), in a
 grid of WIDTH by HEIGHT that contains (X,Y). The arguments of VISIT are the cell's index, the
 distance at which the line enters the cell, and whether the line comes from another column. Stop

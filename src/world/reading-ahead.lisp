@@ -72,8 +72,8 @@ would next draw the gap with the index NEXT."
 (declaim-final outlook)
 
 ;; Inline, so that SCALE is not boxed.
-(declaim (inline draw-gaps-ahead))
-(defun draw-gaps-ahead (outlook index end scale dice)
+(declaim (inline draw-next-gaps))
+(defun draw-next-gaps (outlook index end scale dice)
   "Store the next gaps of SCALE and DICE, for trials before END, in OUTLOOK. The next success is at
 INDEX. Return the index of the first success after these gaps."
   (declare (type outlook outlook) (type (unsigned-byte 50) index end)

@@ -222,7 +222,7 @@ values of one factor; else NIL."
   (equal (list (list (numbered-sample results first) (numbered-sample results second)))
          (level-pair-samples results level-pair)))
 
-(defun resolve-condition-numbers (results first second)
+(defun distinguish-levels-from-numbers (results first second)
   "Return FIRST and SECOND, or their texts if both are levels of one factor and not numbers of
 conditions. Signals MISUSE if FIRST and SECOND could be levels as well as numbers of conditions."
   (let ((level-pair (level-pair-of-integers results first second)))
@@ -238,7 +238,7 @@ conditions. Signals MISUSE if FIRST and SECOND could be levels as well as number
 (defun designated-pairs (results first second)
   "Return two values: the pairs of samples of RESULTS for the designators FIRST and SECOND; and the
 index of the factor, if FIRST and SECOND are levels of several conditions. SECOND may be :ALL."
-  (multiple-value-bind (first second) (resolve-condition-numbers results first second)
+  (multiple-value-bind (first second) (distinguish-levels-from-numbers results first second)
     (multiple-value-bind (pairs place)
         (and (or (rest (designated-samples results first))
                  (and (not (eq :all second)) (rest (designated-samples results second))))

@@ -229,7 +229,7 @@ Signals MISUSE if a trial has no block but other trials of its condition have bl
                (reject-missing-series rows texts seed)))))
     blocks))
 
-(defun blocks-in-place-p (blocks file)
+(defun file-has-just-blocks-p (blocks file)
   "True if FILE has exactly BLOCKS, in this order."
   (let ((place (1+ (length (first-line file)))))
     (and (loop for block across blocks
@@ -253,6 +253,6 @@ MISUSE; after an error FILE is unchanged."
     (call-with-line-reader
      (lambda (line-of)
        (let ((blocks (select-blocks rows index line-of)))
-         (unless (and (equal files (list file)) (blocks-in-place-p blocks (first files)))
+         (unless (and (equal files (list file)) (file-has-just-blocks-p blocks (first files)))
            (write-blocks blocks columns line-of file))))
      files)))
