@@ -193,9 +193,9 @@ Afterwards runs ENDING in an environment with NIL. A frame remembers the element
              (enter body (vector environment (pop memory)) frame))))))
 
 (define-expression each-number
-  "Runs BODY for each number from 0 below the number that LIMIT returns, in an environment with this
-number. Afterwards runs ENDING in an environment with the number of turns. A frame remembers a cons
-of the next number and the limit."
+  "Runs BODY once for each integer N from 0 to one less than the value of LIMIT, in an environment
+that contains N. Afterwards runs ENDING in an environment with the number of turns. A frame
+remembers a cons of the next number and the limit."
   (:parts (limit function) (body node) (ending node))
   (:steps
    (begin

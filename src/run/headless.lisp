@@ -29,8 +29,9 @@ simulation keeps a journal. THINKING is the thinking mode."
 (defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep
                                                (thinking :free) (errors :report) variables)
   "Call FUNCTION without arguments in a new headless simulation of ROBOTS, and return its values.
-ROBOTS is a robot, its name, or a list of robots and names. VARIABLES are further symbols, of any
-package, bound to the ROBOTS with these names. The other arguments are options of WITH-SIMULATION."
+ROBOTS is a robot, its name, or a list of robots and names. VARIABLES are symbols of any package;
+each is bound to the robot in ROBOTS that has the same name, as the names of ROBOTS are. The other
+arguments are options of WITH-SIMULATION."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking-mode 'with-simulation thinking)
   (check-argument with-simulation errors (typep errors 'error-policy)

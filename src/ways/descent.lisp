@@ -183,7 +183,8 @@ The cost to the goal is lower by DROP at the end of the side than at its beginni
   "The highest cost ratio of a straight line to the steps that it replaces. This saves turns.")
 
 (defstruct (polyline (:constructor make-polyline (x y)) (:copier nil))
-  "A growing way: its last vertex (X,Y), end (END-X,END-Y), cost SINCE the last vertex, and POINTS."
+  "A way that is being drawn. POINTS are its vertices, the latest first. (X,Y) is the start or the
+latest vertex; from there the way leads to (END-X,END-Y), at the cost SINCE."
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
   (end-x x :type double-float)

@@ -182,8 +182,9 @@ its basic direction and the opposite. Errors in the form are queued as messages 
 (defun matcher-form (matcher definition)
   (unless (and (proper-list-p matcher) (<= 2 (length matcher) 4)
                (loop for step in (cddr matcher) always (typep step '(signed-byte 16))))
-    (reject-clause definition matcher
-                   "(match-form direction), or (match-form direction dx dy) for a place beside it"))
+    (reject-clause
+     definition matcher
+     "(match-form direction), or (match-form direction dx dy) for a cell beside the place"))
   (destructuring-bind (form direction &optional (dx 0) (dy 0)) matcher
     `(make-rule ',(parse-match-form form definition)
                 (checked-direction ,definition ',matcher ,direction) ,dx ,dy)))

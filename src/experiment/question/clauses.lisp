@@ -75,8 +75,8 @@ each of its ranges. Equal points count once; ranges of few integers give equal p
     (:parameters "(:parameters (parameter form)...)")
     (:clean "(:clean) or (:clean t)")
     (:thinking "(:thinking mode), as WITH-SIMULATION takes it")
-    (:vary "(:vary (what form...)...), (what :in form) for the values in a list, or a design such ~
-            as (:sobol n (what low high)...)")
+    (:vary "(:vary part...). A part is (what form...), (what :in form) with values in a list, or a ~
+            design such as (:sobol n (what low high)...)")
     (:conditions "(:conditions (name (what form)...)...)")
     (:trials "(:trials n), an integer from 1 to 1e9")
     (:seed "(:seed n), an integer")
