@@ -83,7 +83,7 @@
     (signals base:wrong-argument (display:save-picture robot "world"))
     (handler-case (progn (display:save-picture robot "/tmp/[1]*?.svg") (fail "It was saved."))
       (base:wrong-argument (trouble)
-        (is-true (mentions-p (princ-to-string trouble) "before each * ? and ["))
+        (is-true (mentions-p (princ-to-string trouble) "before each *, ? and ["))
         (is (not (mentions-p (princ-to-string trouble) "PATTERN")))))
     (signals base:wrong-argument (display:save-picture :nobody "world.svg"))
     (signals base:wrong-argument (display:save-picture robot "world.svg" :display :kitchen))))

@@ -59,7 +59,7 @@
     (check "line 7: negate is on line 4 already" (format nil "~Anegate: 1~%" (floor-text)))
     (check "line 1: \"  negate: 0\" must be a key at the left edge"
            (format nil "  negate: 0~%~A" (floor-text)))
-    (check "line 2: \"floor\" is not a key at" (format nil "# x~%floor~%"))
+    (check "line 2: \"floor\" must be a key at" (format nil "# x~%floor~%"))
     (check "line 1: an item of a list has no key above it" (format nil "- 1~%~A" (floor-text)))
     (check "line 7: an item of a list has no key above it" (format nil "~A- 1~%" (floor-text)))
     (check "floor.yaml, line 2: the file has bytes that are not UTF-8. Save the file in UTF-8."

@@ -53,8 +53,8 @@
     (check "no PNG images of colour type 3 with 16 bits" 3 1 16 3)
     (check "no PNG images of colour type 0 with 3 bits" 3 1 3 0)
     (check "no PNG images of colour type 6 with 0 bits" 3 1 0 6)
-    (check "compression, filter and interlace, 1, 0 and 0, do not exist" 3 1 8 0 '(1 0 0))
-    (check "compression, filter and interlace, 0, 0 and 2, do not exist" 3 1 8 0 '(0 0 2))
+    (check "PNG has no compression 1, filter 0 and interlace 0" 3 1 8 0 '(1 0 0))
+    (check "PNG has no compression 0, filter 0 and interlace 2" 3 1 8 0 '(0 0 2))
     (check "the image has 4294967295 by 4294967295 pixels, and the limit is 25000000"
            4294967295 4294967295 16 6)
     (check "interlaced (Adam7), which is not supported; convert the image, for example by: ~
@@ -107,7 +107,7 @@
     (check-complaint "the image has 4 by 3 pixels, and the limit is 11"
                      (complaint-of-image image :limit 11))
     (is (null (complaint-of-image image :limit 12))))
-  (check-complaint "the pixels take 200005000 bytes, and 11 bytes of compressed data are too few"
+  (check-complaint "the pixels take 200005000 bytes, for which 11 bytes of compressed data are too"
                    (complaint-of-image
                     (png-of-chunks (png-head-chunk 5000 5000 16 6)
                                    (png-chunk "IDAT" (stored-by-zlib ""))))))

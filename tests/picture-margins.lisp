@@ -236,7 +236,7 @@ room."
           (handler-case (progn (funcall drawing) (fail "~S" canvas:graphics-scale*))
             (base:misuse (trouble)
               (is-true (has-words-p (princ-to-string trouble) "graphics-scale*"
-                                    "from 1 to 256" "or to 8")))))))))
+                                    "from 1 to 256" "With 8")))))))))
 
 (test margins.every-picture-of-a-shipped-size-fits
   "Up to 200 x 150 cells a picture is no larger than 900 x 700."

@@ -23,7 +23,7 @@
   ;; plans: moving
   (:export #:outcome #:driving-speed* #:turn-by #:drive-by #:turn-towards #:drive-towards
            #:stand-still
-           #:feel-ahead #:look-for-places #:begin-track #:end-track-keeping-designator
+           #:feel-ahead #:look-for-places #:begin-track #:stop-track
            #:go-to-designated
            #:find-doorway #:in-doorway-p #:take-bearings #:pass-doorway #:widest-camera
            #:travel-to #:patrol-places)
@@ -31,7 +31,7 @@
   (:export #:look-for-things #:turn-camera #:scan-for-thing #:look-again #:confirm-thing
            #:approach-thing #:visit-things)
   ;; plans: handling
-  (:export #:open-bin #:close-bin #:reach-into-bin #:draw-back #:let-go #:holding-plans-p
+  (:export #:open-bin #:close-bin #:reach-into-bin #:draw-back #:let-go #:holding-p
            #:look-closely #:grasp-thing #:stow-thing #:take-thing #:look-into-bin
            #:withdraw-camera #:put-thing-down #:free-hand #:stowed-p)
   ;; plans: errands

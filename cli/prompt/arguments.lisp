@@ -188,7 +188,7 @@ robot.")
 
 (defmacro define-argument-choices (type form)
   "Make the value of FORM the choices for an argument of TYPE, whatever was typed so far."
-  `(defmethod choices ((type (eql ,type)) session typed)
+  `(defmethod argument-choices ((type (eql ,type)) session typed)
      (declare (ignore session typed))
      ,form))
 
