@@ -36,7 +36,7 @@
     (intern name face)))
 
 (defun ensure-read-only-reader (symbol face)
-  "Return a symbol of the package FACE for the same function as SYMBOL, which users cannot SETF."
+  "Return a symbol of the package FACE that names the function of SYMBOL, but refuses SETF."
   (let ((reader (ensure-own-symbol face (symbol-name symbol))))
     (setf (fdefinition reader) (fdefinition symbol)
           (documentation reader 'function) (documentation symbol 'function)

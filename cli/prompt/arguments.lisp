@@ -28,7 +28,7 @@ typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE
   (let ((count (length elements)))
     (cond ((zerop count) (reject-line "~A has no ~A." robot kind))
           ((not (typep index 'unsigned-byte))
-           (reject-line "~S is no ~A. Give its number." index kind))
+           (reject-line "~S is not the number of a ~A. Give a number from 0." index kind))
           ((< index count) (aref elements index))
           (t (reject-line "There is no ~A ~D. ~A has ~D, numbered from 0."
                           kind index robot count)))))

@@ -6,9 +6,9 @@
 ;;; tells which task waits for the answer, and with which arguments. Twins have the same TOKEN.
 
 (defstruct (question (:include wish) (:constructor %make-question) (:copier nil))
-  "A question for rollouts: how good each of BRANCHES, texts, is for the rest of the plan; or how
-PLAN with ARGUMENTS, or the task SUBJECT, may end. OPERATOR is the operator that asks. In a rollout,
-ENDED and RESULT say how the branch or plan on trial has ended."
+  "A question that rollouts answer: which of the texts BRANCHES is best for the rest of the plan;
+how PLAN, called with ARGUMENTS, may end; or how the task SUBJECT may end. OPERATOR asks. In a
+rollout, ENDED and RESULT say how the branch or plan on trial has ended."
   (token (gensym "QUESTION") :type symbol :read-only t)
   (operator nil :type symbol :read-only t)
   (branches '() :type list :read-only t)

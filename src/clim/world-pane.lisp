@@ -27,7 +27,7 @@
 (defun view-map (pane) (window-map (window-of pane)))
 
 (defun pane-margins (pane)
-  "Return the left, top and bottom margins of PANE, with coordinates and scale bar, as pixels."
+  "Return how many pixels PANE has left of, above and below its map, for coordinates and the scale."
   (view-edges (view-map pane) (window-layers (window-of pane))))
 
 (defun view-box (pane)

@@ -93,8 +93,8 @@ made, add a remark that says so."
         title)))
 
 (defun checked-end-tick (operator journal until)
-  "Return the last tick of JOURNAL to show. It is UNTIL, an argument of OPERATOR, or the end of
-JOURNAL if UNTIL is NIL. Signals WRONG-ARGUMENT if UNTIL is not a tick of JOURNAL."
+  "Return the last tick of JOURNAL to show: UNTIL, or the end of JOURNAL if UNTIL is NIL. Signals
+WRONG-ARGUMENT for OPERATOR if UNTIL is not a tick of JOURNAL."
   (let ((end (journal-end journal)))
     (unless (typep until `(or null (integer 0 ,end)))
       (reject-argument operator :until until

@@ -30,7 +30,7 @@ simulation keeps a journal. THINKING is the thinking mode."
                                                (thinking :free) (errors :report) variables)
   "Call FUNCTION without arguments in a new headless simulation of ROBOTS, and return its values.
 ROBOTS is a robot, its name, or a list of robots and names. VARIABLES are symbols of any package;
-each is bound to the robot in ROBOTS that has the same name, as the names of ROBOTS are. The other
+each is bound to the robot in ROBOTS that has the same name. The other
 arguments are options of WITH-SIMULATION."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking-mode 'with-simulation thinking)

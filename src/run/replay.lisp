@@ -56,10 +56,10 @@ are the robots' blueprints. A text says so if a robot is now in another map."
         for tick in (append (mapcar #'first (journal-entries journal))
                             (list (journal-end journal)))
         do (when (> (- tick before) +most-empty-ticks+)
-             (reject-use "The journal goes on to tick ~D without any entry after tick ~D. Give ~
-                          :UNTIL, the last tick to repeat: (replay journal :until ~D), or :until ~
-                          ~D for the whole journal."
-                         tick before before (journal-end journal)))
+             (reject-use "From tick ~D to tick ~D the journal has no entry; so many ticks may take ~
+                          long. Say where to stop: (replay journal :until ~D), or :until ~D to ~
+                          repeat the whole journal."
+                         before tick before (journal-end journal)))
            (setf before tick)))
 
 ;;; Entries.

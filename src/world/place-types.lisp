@@ -64,7 +64,7 @@ is a place that faces DIRECTION."
 
 (defun rules-table (rules)
   "Return a vector. At each neighbourhood code it has the number, from 1, of the first of RULES that
-fits, or 0. The match forms of RULES are small."
+fits, or 0. All match forms of RULES must be small (SMALL-MATCH-FORM-P)."
   (let ((table (make-octets 512)))
     (loop for rule in (reverse rules) for number downfrom (length rules)
           do (multiple-value-bind (mask value) (match-form-bits (rule-form rule))

@@ -37,7 +37,7 @@ MET yet. Add the tags to MET."
                   (thing-alive-p thing)
                   (= rank (thing-rank thing))
                   (< 0 (thing-serial thing) (world-next-serial world)))
-             "element ~D of the world's things does not exist in the world" rank)
+             "element ~D of the world's things does not belong to it, or has a wrong rank" rank)
   (must-hold (proper-list-of-p (lambda (entry) (typep entry '(cons keyword (cons t null))))
                                (thing-attributes thing))
              "the attributes of ~A are invalid" thing)

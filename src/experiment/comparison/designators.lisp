@@ -223,8 +223,8 @@ values of one factor; else NIL."
          (level-pair-samples results level-pair)))
 
 (defun distinguish-levels-from-numbers (results first second)
-  "Return FIRST and SECOND, or their texts if both are levels of one factor and not numbers of
-conditions. Signals MISUSE if FIRST and SECOND could be levels as well as numbers of conditions."
+  "Return FIRST and SECOND, which designate conditions; but as texts if both are integers that can
+only be levels of one factor. Signals MISUSE if they could also be numbers of conditions."
   (let ((level-pair (level-pair-of-integers results first second)))
     (cond ((or (null level-pair) (same-samples-p results first second level-pair))
            (values first second))
