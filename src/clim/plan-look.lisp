@@ -58,7 +58,7 @@ EQUAL if LOOK would show the same."
 (defun call-while-plans-rest (interface function)
   "Call FUNCTION while the plans of INTERFACE are at rest, or at once if this thread runs their
 reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to rest."
-  (if (holding-p interface) (funcall function) (participant-at-rest interface function)))
+  (if (holding-plans-p interface) (funcall function) (participant-at-rest interface function)))
 
 (defun update-plan-timeline (look interface)
   "Store the timeline of the plans of INTERFACE in LOOK. Return NIL if the plans are busy."
@@ -125,7 +125,7 @@ them. Return NIL if the plans are busy, else true."
   "Update LOOK at once if this thread runs its plans' reactions. Return true if LOOK was updated."
   (let* ((simulation (plan-look-simulation look)) (interface (plan-interface-of simulation)))
     (and interface
-         (holding-p interface)
+         (holding-plans-p interface)
          (funcall (plan-look-shown-p look))
          (update-look look interface (plans-state-mark look interface)))))
 

@@ -129,7 +129,7 @@
       (:too-long (draw-plan-text canvas pane +plan-buttons-height+
                                  (format nil "The trace is too long to be drawn in the window. ~
                                               The line PLAN-TIMELINE plans.svg saves a picture.")))
-      (t (draw-page canvas page :width (content-width pane) :top +plan-buttons-height+
+      (t (draw-timeline-page canvas page :width (content-width pane) :top +plan-buttons-height+
                                 :from (pane-offset pane)
                                 :to (+ (pane-offset pane) (nth-value 1 (pane-size pane))))))))
 
@@ -209,7 +209,7 @@
          page
          (not (symbolp page))
          (> y +plan-buttons-height+)
-         (tick-at x (page-scale page (content-width pane))))))
+         (tick-at x (timeline-page-scale page (content-width pane))))))
 
 (defun plan-subject-at (pane x y)
   "Return the subject that PANE shows at X, Y: a button, the fold mark or image of a task, or a

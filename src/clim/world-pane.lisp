@@ -28,7 +28,7 @@
 
 (defun pane-margins (pane)
   "Return how many pixels PANE has left of, above and below its map, for coordinates and the scale."
-  (view-edges (view-map pane) (window-layers (window-of pane))))
+  (view-strip-widths (view-map pane) (window-layers (window-of pane))))
 
 (defun view-box (pane)
   "Return the box (left top right bottom) of the map in PANE, without coordinates and scale bar."
