@@ -16,7 +16,7 @@
 
 (defun hold-for (window text)
   "Let another program than WINDOW have copied TEXT."
-  (window::share-text (clim:port window) text '(:clipboard)))
+  (window::offer-text (clim:port window) text '(:clipboard)))
 
 (test clipboard.a-long-text-is-pasted-whole
   "20,000 characters, and more than X hands over at once."

@@ -16,7 +16,7 @@
 
 (defun shown-in (window)
   "Return the name of the robot that WINDOW shows, and its run."
-  (list (window::shown-robot window) (window::window-simulation window)))
+  (list (window::shown-robot-name window) (window::window-simulation window)))
 
 (test going-on.a-window-goes-where-world-has-led-and-says-so-once
   (in-shed

@@ -24,7 +24,7 @@
   (is (null (symbol-of *symbols-of-two* #x80))))
 
 (test keyboard.mcclim-asks-us
-  (is (eq #'window::read-key (fdefinition window::*mcclim-key-reader-name*))))
+  (is (eq #'window::decode-x-key (fdefinition window::*mcclim-key-reader-name*))))
 
 (defun typed-with (window &rest keys)
   "Return what WINDOW types when KEYS are pressed, which are characters or names of keys."

@@ -7,8 +7,8 @@
 (defun open-menu-called (window title)
   "Click on the menu called TITLE in the bar of WINDOW."
   (let ((bar (pane window 'window::menus)))
-    (window::handle-any-press bar :left
-                              (+ 5 (window::menu-left bar (find title window::*menus*
+    (window::handle-press-closing-popup bar :left
+                              (+ 5 (window::menu-left-edge bar (find title window::*menus*
                                                                 :key #'window::menu-title
                                                                 :test #'equal)))
                               5)))
@@ -23,7 +23,7 @@
   (let* ((popup (window::window-popup window))
          (position (position text (rows-of-popup window) :test #'equal)))
     (window::scroll-to popup (* position window::+row-height+))
-    (window::handle-any-press popup :left 20
+    (window::handle-press-closing-popup popup :left 20
                               (- (+ 8 (* position window::+row-height+))
                                  (window::pane-offset popup)))))
 
@@ -131,7 +131,7 @@
                                :key (lambda (subject) (window::button-label (first subject)))
                                :test #'equal))
                  (declare (ignore rest))
-                 (window::handle-any-press bar :left (+ left 3) (+ top 3)))))
+                 (window::handle-press-closing-popup bar :left (+ left 3) (+ top 3)))))
         (press "Layers")
         (is (member "In colour" (rows-of-popup window) :test #'equal))
         (press "Help")
@@ -168,7 +168,7 @@
   (in-window (window robot)
     (lay-out window 640 480)
     (let ((popup (window::window-popup window)))
-      (window::open-first-menu window)
+      (window::toggle-first-menu window)
       (move-mouse popup 20 60)
       (window::highlight-further-row popup 1)
       (let ((row (window::pane-pointed popup)))

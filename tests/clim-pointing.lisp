@@ -28,7 +28,7 @@
           (is (mentions-p text "Cell 3, 4: "))
           (is (mentions-p text "BOX#1 at 3.50, 4.50"))
           (is (mentions-p text ":color red")))
-        (is (mentions-p (second (window::strip-lines window)) "BOX#1"))))))
+        (is (mentions-p (second (window::status-strip-lines window)) "BOX#1"))))))
 
 (test pointing.the-strip-tells-of-what-is-under-a-resting-mouse-now
   "What was there moves away; the view moves."
@@ -143,7 +143,7 @@ leads to both."
        (let ((*focus* (list nil)) (port (clim:port one)))
          (flet ((click-in (window)
                   (let ((pane (pane window 'window::interactor)))
-                    (window::direct-keys-by-event
+                    (window::focus-window-of-event
                      port (make-instance 'clim:pointer-button-press-event
                                          :sheet pane :x 5 :y 5
                                          :button clim:+pointer-left-button+
@@ -219,7 +219,7 @@ leads to both."
       (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (is (not (eq before (window::window-robot window))))
       (is (member '("Stop" "stop") (window::offers before window) :test #'equal))
-      (is (equal "pos 3 4" (window::line-that-moves before "3" "4" window))))))
+      (is (equal "pos 3 4" (window::subject-moving-line before "3" "4" window))))))
 
 (test pointing.offers-what-can-be-done-with-a-designator
   "Track, and what is tracked, grasp."

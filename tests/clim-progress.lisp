@@ -4,7 +4,7 @@
 
 (in-suite clim)
 
-(defun progress-text-of (simulation &optional (pulse (window::make-sample)))
+(defun progress-text-of (simulation &optional (pulse (window::make-rate-sample)))
   (window::progress-text (window::measure-progress simulation pulse)))
 
 (test progress.says-whether-time-stands-still
@@ -24,7 +24,7 @@
         (run:stop-clock simulation)))))
 
 (test progress.measures-the-rate-over-some-ticks
-  (let ((pulse (window::make-sample :seconds 100d0)))
+  (let ((pulse (window::make-rate-sample :seconds 100d0)))
     (is (null (window::measure-rate pulse 3 100.5d0)))
     (is (= 20 (window::measure-rate pulse 20 101d0)))
     (is (= 20 (window::measure-rate pulse 21 101.2d0)))
@@ -59,7 +59,7 @@
   (in-studio (robot)
     (call-while-code-holds
      (lambda (simulation)
-       (let ((pulse (window::make-sample)))
+       (let ((pulse (window::make-rate-sample)))
          (window::measure-progress simulation pulse)
          (is (mentions-p (progress-text-of simulation pulse) "busy in"))))
      robot)))

@@ -9,7 +9,7 @@
     (let ((pane (pane window 'window::world)))
       (flet ((filled-p ()
                (multiple-value-bind (width height) (window::pane-size pane)
-                 (destructuring-bind (left top bottom) (window::pane-edges pane)
+                 (destructuring-bind (left top bottom) (window::pane-margins pane)
                    (decf width left)
                    (decf height (+ top bottom)))
                  (let ((scale (window::pane-scale pane)))
@@ -49,13 +49,13 @@
             do (lay-out window width height)
                (let ((bottom (- (* 10 (window::pane-scale pane)) (window::pane-top pane)))
                      (room (nth-value 1 (window::pane-size pane))))
-                 (destructuring-bind (left top low) (window::pane-edges pane)
+                 (destructuring-bind (left top low) (window::pane-margins pane)
                    (is (every #'plusp (list left top low)))
                    (is (<= (window::pane-left pane) (- left)))
                    (is (<= (window::pane-top pane) (- top)))
                    (is (<= bottom (- room low))))))
       (setf (window::window-layers window) '())
-      (is (equal '(0 0 0) (window::pane-edges pane))))))
+      (is (equal '(0 0 0) (window::pane-margins pane))))))
 
 (test view.has-nothing-below-its-numbers
   "However the map is dragged: what lies under a strip is neither told of, nor picked, nor marked."
@@ -81,12 +81,12 @@
       (robot:place-robot robot 17.5 8.5 0)
       (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::refresh window)
-      (is (not (window::off-centre-p pane)))
+      (is (not (window::robot-off-centre-p pane)))
       (window::com-follow)
       (robot:place-robot robot 2.5 2.5 0)
       (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
       (window::refresh window)
-      (is (window::off-centre-p pane)))))
+      (is (window::robot-off-centre-p pane)))))
 
 (test view.shows-the-scale-that-the-user-sets
   (in-window (window robot)

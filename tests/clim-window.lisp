@@ -258,7 +258,7 @@
       (unwind-protect
            (let ((window (window::open-window robot)))
              (is (eq window (window::open-window robot)))
-             (is (member window (window::open-windows)))
+             (is (member window (window::open-window-list)))
              (window::close-window window)
              (base:join-thread (window::window-thread window))
              (base:join-thread (window::conversation-thread
@@ -266,7 +266,7 @@
              ;; The next tick takes the observers of both away.
              (command:robot-turn robot 1 nil)
              (run:await-idle simulation 20)
-             (is (not (member window (window::open-windows))))
+             (is (not (member window (window::open-window-list))))
              (is (eq :disowned (clim:frame-state window)))
              (is (time:live-p simulation))
              ;; The history goes on.

@@ -233,7 +233,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
                    (let ((second (window::open-window other)))
                      (await-window second)
                      (end-window second)))
-                 (is (member window (window::open-windows))))
+                 (is (member window (window::open-window-list))))
             (end-window window)
             (run:stop-clock simulation)))))))
 
@@ -250,7 +250,7 @@ server blackens what is resized, and has it painted by what it sends to the wind
                  (setf window (window::open-window robot))
                  (await-window window))
                (base:join-thread (window::window-thread window))
-               (is (not (member window (window::open-windows))))
+               (is (not (member window (window::open-window-list))))
                (is (time:live-p simulation))
                (is (< tick (setf tick (run:simulation-tick simulation))))))
         (run:stop-clock simulation)))))
