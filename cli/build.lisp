@@ -76,7 +76,7 @@
                         (uiop:native-namestring file) library)))))))
 
 (defun print-missing-libraries ()
-  "Print those libraries in the environment variable LIBRARIES that ASDF cannot find, on one line."
+  "Print, on one line, the libraries in the variable LIBRARIES of the environment that ASDF lacks."
   (call-or-quit
    (lambda ()
      (format t "~&missing: ~{~A ~}~%"
@@ -86,7 +86,7 @@
   (string= (asdf:primary-system-name name) "ars-magna"))
 
 (defun libraries (system)
-  "Return the names of the libraries that SYSTEM or the project's systems below it depend on."
+  "Return the names of the libraries that SYSTEM needs itself or through the project's systems."
   (remove-duplicates
    (loop for name in (asdf:system-depends-on (asdf:find-system system))
          if (project-system-p name) append (libraries name) else collect name)
@@ -121,7 +121,7 @@
       (list (asdf:component-pathname component))))
 
 (defun library-files ()
-  "Return the files of SBCL, of the loaded libraries, and of Quicklisp's installed versions."
+  "Return the files of SBCL and of the loaded libraries, and Quicklisp's version files."
   (append (list sb-ext:*runtime-pathname* sb-ext:*core-pathname*)
           (loop for system in (loaded-libraries)
                 collect (asdf:system-source-file system)
@@ -308,7 +308,7 @@ and try again. If the second try fails, too, exit with status 2."
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell suites seed) 0 1)))
 
 (defun record-sessions (names)
-  "Record the screens of the newcomer's sessions NAMES, or of all sessions, in their files. Exit
-with status 1 if a session does not get the text that it waits for."
+  "Play the sessions NAMES of tests/newcomer, or all, and save their screens. Exit with status 1 if
+a session does not get the text that it waits for."
   (load-strictly "ars-magna/tests")
   (uiop:quit (if (uiop:symbol-call :ars-magna.tests :record-sessions names) 0 1)))

@@ -317,7 +317,7 @@ last. Return its status, and its error output."
 
 (test lines.that-end-with-no-unit-say-which-there-are
   (is-true (has-words-p (complaint "turn 3 foo")
-                        "foo is too much" "no unit of an angle. Known: rad" "deg"))
+                        "foo is not a unit for an angle. Known units: rad" "deg"))
   (is-true (has-words-p (complaint "turn 3 4") "4 is too much")))
 
 (defvar *crew* '(fitter) "Robots of a run that a variable names.")

@@ -11,7 +11,7 @@
 of the cursor. The function returns the new text, the new position and the killed text, if any.")
 
 (defmacro define-key (table keys lambda-list documentation &body body)
-  "Define each of KEYS: its entry in TABLE is a function of LAMBDA-LIST that runs BODY."
+  "Make each of KEYS in TABLE run BODY, as a function with LAMBDA-LIST."
   `(dolist (key ',keys)
      (setf (gethash key ,table)
            (lambda ,lambda-list ,documentation (declare (ignorable ,@lambda-list)) ,@body))))
@@ -26,7 +26,7 @@ of the cursor. The function returns the new text, the new position and the kille
   (or (position #\Newline text :start point) (length text)))
 
 (defun word-start-before (text point &optional (in-word-p #'alphanumericp))
-  "Return the start of the word in TEXT at or before POINT. Its characters satisfy IN-WORD-P."
+  "Return the start of the word in TEXT at or before POINT. Characters of words satisfy IN-WORD-P."
   (let* ((end (position-if in-word-p text :end point :from-end t))
          (gap (and end (position-if-not in-word-p text :end end :from-end t))))
     (if gap (1+ gap) 0)))

@@ -63,7 +63,7 @@ Control-C and similar keys are signals instead.")
              (stream-error () nil)))))
 
 (defun make-octet-reader (stream)
-  "Return a function that returns the next octet of STREAM, or puts its argument, an octet, back."
+  "Return a function that returns the next octet of STREAM or, called with an octet, puts it back."
   (lambda (&optional octet)
     (if octet
         (progn (put-back-octet (edited-ahead stream) octet) nil)
@@ -84,7 +84,7 @@ Control-C and similar keys are signals instead.")
   (:method ((stream edited-text))))
 
 (defun set-paste-marking (console on)
-  "Make the terminal of CONSOLE mark pasted text (bracketed paste mode), or no longer if ON is NIL."
+  "Switch bracketed paste mode of CONSOLE's terminal on, so that it marks pasted text, or off."
   (with-console (stream console)
     (write-string (paste-marking-code on) stream)
     (finish-output stream)))

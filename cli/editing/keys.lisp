@@ -41,7 +41,7 @@
                       (write-char char out)))))
 
 (defun normalize-newlines (text)
-  "Return TEXT, which was pasted, with line ends as newlines, but without newlines at its end."
+  "Return the pasted TEXT with newlines for all line ends, but without newlines at its end."
   (string-right-trim
    '(#\Newline)
    (with-output-to-string (out)
@@ -97,7 +97,7 @@
           ((starts-with-subseq "meta-" name) (format nil "~C~A" +escape+ (subseq name 5))))))
 
 (defun octets-of-key (key)
-  "Return the octets that a terminal sends for KEY, as a string with one character for each. The
+  "Return the octets that a terminal sends for KEY, as a string: one character for each octet. The
 string is empty if no terminal has KEY."
   (cond ((stringp key) (utf-8-encoded key))
         ((consp key) (format nil "~A~A~A" (escape-sequence-of-key (first key))

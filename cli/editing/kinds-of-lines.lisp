@@ -43,8 +43,7 @@
 ;;; The words of a line.
 
 (defun skip-blanks (text start)
-  "Return the position of the first word in TEXT from START on; the length of TEXT if only blanks or
-a comment follow."
+  "Return the start of the first word in TEXT from START on; TEXT's length if there is no word."
   (let ((position (position-if-not #'blank-character-p text :start start)))
     (if (and position (not (comment-at-p text position)))
         position
@@ -148,7 +147,7 @@ prompts, and the lines after the form. A line typed at a prompt does not belong 
 
 (defun lines-typed-at-prompts (lines)
   "Return the typed lines among the pasted LINES, the first of which has a prompt. Lines below an
-incomplete form are taken for the rest of the form."
+incomplete form count as the rest of the form."
   (loop while lines
         for line = (pop lines)
         for typed = (typed-part line)
@@ -168,7 +167,7 @@ prompts except messages, and lines that complete a form. If no line has a prompt
         lines)))
 
 (defun count-output-lines (text)
-  "Count the lines after the last prompt of the pasted TEXT that are taken for output."
+  "Return how many lines after the last prompt in the pasted TEXT are taken for output."
   (let* ((lines (lines-in text))
          (start (position-if #'text-after-prompt lines :from-end t))
          (last (and start (nthcdr start lines)))

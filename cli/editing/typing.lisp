@@ -72,7 +72,7 @@ argument, the function steps back by a character."
             ((< position (length text)) (prog1 (char text position) (incf position)))))))
 
 (defun parse-type-ahead (octets entries)
-  "Return the type-ahead in OCTETS, an unread string. ENTRIES are as for APPLY-KEY-TO-TYPE-AHEAD."
+  "Parse OCTETS, a string of unread input, as type-ahead. ENTRIES: see APPLY-KEY-TO-TYPE-AHEAD."
   (loop with ahead = (make-ahead)
         with next = (make-text-reader octets)
         for key = (read-key next)
@@ -112,8 +112,7 @@ argument, the function steps back by a character."
         (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets)))))
 
 (defgeneric call-with-typed-input (function input)
-  (:documentation "Call FUNCTION, which reads lines from INPUT. Prepare the terminal before, and
-restore it afterwards.")
+  (:documentation "Call FUNCTION, which reads lines from INPUT, with the terminal set up.")
   (:method (function input)
     (declare (ignore input))
     (funcall function))
@@ -144,8 +143,7 @@ BEFORE and is appended to that entry.")
 ;;; line at once counts as pasted, too: no user types that fast, except ahead.
 
 (defgeneric pasted-lines-waiting-p (input)
-  (:documentation "True if the line read last was pasted into INPUT together with lines that are
-still unread.")
+  (:documentation "True if INPUT has unread lines that were pasted with the line read last.")
   (:method (input)
     (declare (ignore input))
     nil)

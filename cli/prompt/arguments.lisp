@@ -100,7 +100,7 @@ not evaluated, so a quote before the datum does not matter."
       value))
 
 (defun coerce-for-type (value type)
-  "Return the typed VALUE, or the equal integer if only that integer is of the argument TYPE."
+  "Return the typed VALUE. If only an equal integer is of the argument TYPE, return that integer."
   (if (argument-of-type-p value type)
       value
       (let ((whole (integer-if-whole value)))
@@ -151,11 +151,11 @@ end. Numbers with units are converted to the simulator's own units."
        (session-robot)))
 
 (defun reject-surplus-text (line text)
-  "Signal BAD-LINE because TEXT follows the last argument of LINE. List any units possible there."
+  "Signal BAD-LINE because TEXT follows LINE's last argument. List the units that could follow it."
   (let* ((parameter (first (last (line-parameters line))))
          (dimension (and parameter (dimension-of (line-parameter-type parameter)))))
     (if (and dimension (alpha-char-p (char text 0)))
-        (reject-line "~A is too much: it is no unit of ~A. Known: ~{~A~^, ~}. ~A" text
+        (reject-line "~A is not a unit for ~A. Known units: ~{~A~^, ~}. ~A" text
                      (dimension-text dimension) (unit-names dimension) (arguments-text line))
         (reject-line "~A is too much. ~A~@[ ~A~]" text (arguments-text line)
                      (and (string= "GO" (line-name line)) "GO-TO x y drives to a place.")))))
@@ -178,8 +178,7 @@ end. Numbers with units are converted to the simulator's own units."
 (defgeneric argument-choices (type session typed)
   (:documentation "Return a list of possible arguments of TYPE, a keyword, in SESSION: strings,
 symbols and numbers. TYPED is the text typed so far; choices that do not begin with TYPED may be
-included. Return NIL if the choices are not known. May signal BAD-LINE, for example without a
-robot.")
+included. Return NIL if the choices are not known. May signal BAD-LINE, as without a robot.")
   (:method (type session typed)
     (declare (ignore session typed))
     (when (part-type-p type)

@@ -37,7 +37,7 @@
                               (short-error-text (printable-report restart))))))
 
 (defun show-break (session break-request)
-  "Show the condition and restarts of BREAK-REQUEST in SESSION, and change its prompt to Break>."
+  "Show the condition and restarts of BREAK-REQUEST in SESSION, whose prompt becomes Break>."
   (let ((console (session-console session)))
     (setf (break-request-told-p break-request) t)
     (write-fitted console "~A" (break-text session break-request))
@@ -54,7 +54,7 @@
     (restore-prompt console)))
 
 (defun break-summary (session break-request)
-  "Return a line with the condition of BREAK-REQUEST, and its thread unless that is SESSION's."
+  "Return one line: the condition of BREAK-REQUEST, and its thread if SESSION has another thread."
   (let ((words (break-condition-text (break-request-condition break-request))))
     (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
             (break-thread-text session break-request))))
@@ -107,8 +107,7 @@ end of a sentence that says so; otherwise NIL."
         (t *hook-before-prompts*)))
 
 (defclass prompts () ()
-  (:documentation "The front end of the running prompts: it asks users how to continue after
-breaks."))
+  (:documentation "The front end of running prompts: asks users how to continue after breaks."))
 
 (setf *front-end* (make-instance 'prompts))
 
@@ -133,8 +132,7 @@ breaks."))
     (and (own-thread-p) (null *prompt-debugger-hooks*) hook (not (disabled-hook-p hook)))))
 
 (defun call-sharing-hook (hook function)
-  "Call FUNCTION, which runs a prompt, with HOOK as this thread's debugger hook. Threads without a
-prompt may share HOOK."
+  "Call FUNCTION, a prompt, with HOOK as debugger hook; threads without a prompt may share HOOK."
   (with-debugger-hook (hook)
     (if (other-front-end-answers-p)
         (funcall function)
@@ -152,8 +150,8 @@ prompt may share HOOK."
   (:report "A program reads a line; ANSWER gives it one"))
 
 (defclass asking-text (typed-text) ()
-  (:documentation "The input stream of programs in the thread of a run: it asks the users of prompts
-for each line, or, without a terminal or window, reads from the original input."))
+  (:documentation "The input stream of programs in the thread of a run. It asks the users of prompts
+for each line. Without a terminal or window, it reads the original input."))
 
 (defun ask-for-program-input ()
   "Ask a prompt's user for a program's input line. Return the line, or NIL if the user has gone."

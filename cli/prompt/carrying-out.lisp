@@ -12,7 +12,7 @@
 evaluated, newest first. NEW-P is true if the name had no value when found.")
 
 (defun handle-warning (condition)
-  "Muffle the compiler's CONDITION if users get a message. Definition warnings become messages."
+  "Show definition warnings as messages, record undefined names, muffle other style warnings."
   (typecase condition
     (definition-warning (warning-set (one-line (princ-to-string condition)))
                         (muffle-warning condition))
@@ -47,8 +47,7 @@ report the names in these forms that are still undefined."
              (format stream "~A, line ~D: ~A"
                      (file-trouble-file condition) (file-trouble-line condition)
                      (condition-text (file-trouble-cause condition)))))
-  (:documentation "A form in a file that is being loaded has failed; the forms before it were
-evaluated."))
+  (:documentation "A form of a file being loaded has failed; earlier forms were evaluated."))
 
 (defun condition-has-location-p (condition)
   (or (typep condition 'file-trouble)
@@ -119,7 +118,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
                   (lambda ()
                     (call-refusing-exits
                      (lambda () (eval-locating-read-errors form))
-                     "EXIT would end the simulator amid a line. QUIT leaves."))))))
+                     "EXIT would end the simulator during a line. QUIT leaves."))))))
     (shiftf *** ** * (first values))
     (unless (report-values (session-account session) (mapcar #'value-line values))
       (when values (fresh-line))
@@ -170,7 +169,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
                          (- (count-of-lines-read (session-input session))
                             (count #\Newline text :start place)))
       (reject-line "The line has bytes that are not UTF-8, or U+FFFD, which replaces such bytes. ~
-                    Write it in UTF-8."))))
+                    Write the line in UTF-8."))))
 
 (defun evaluate-forms (session text)
   (loop with position = 0
@@ -285,9 +284,9 @@ carries out; NIL if the robot carries out nothing."
     (and name (values robot name))))
 
 (defun ongoing-work-text (session)
-  "Return text for the user of SESSION after an interrupted line. It says what continues in the
-simulator and how to end that, or how to leave the prompt if nothing continues. During a break, it
-says how to answer. In a trial, the text is empty."
+  "Return text for the user of SESSION after an interrupted line. The text says what continues in
+the simulator and how to end that; or, if nothing continues, how to leave the prompt. During a
+break, the text says how to answer. In a trial, it is empty."
   (multiple-value-bind (robot command) (command-in-progress session)
     (let ((plans-p (notevery #'plan-ending-p (plans))))
       (cond ((restart-choices-text session)
@@ -308,7 +307,7 @@ loads; NIL if CALLS records neither."
           (place (funcall place)))))
 
 (defun report-with-line-number (session text)
-  "Write TEXT to the error output, after script and line number of SESSION's running line."
+  "Write TEXT to the error output. Before it, write the script and number of the running line."
   (let* ((account (session-account session)) (line (running-line-number account)))
     (say-on-error-output (format nil "~@[~A, ~]~@[line ~D: ~]~A"
                                  (and line (account-file account)) line text))))

@@ -9,8 +9,7 @@
 ;;; cli/build.lisp, too, loads this file, into a bare SBCL, for its answer before compiling McCLIM.
 
 (defpackage :ars-magna.clx
-  (:documentation "Checks which version of the library CLX ASDF finds, and whether it works on this
-SBCL.")
+  (:documentation "Checks which version of CLX ASDF finds, and whether it works on this SBCL.")
   (:use :cl)
   (:export #:library-text #:clx-trouble #:*clx-remedy*
            #:find-library #:quicklisp-file #:load-by-quicklisp))

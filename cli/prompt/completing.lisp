@@ -3,8 +3,8 @@
 (in-package :ars-magna.cli)
 
 (defvar *completer* nil
-  "NIL, or a function that completes text. It gets a text and a cursor position, and returns the
-start of the part to complete, a list of completions, and the text to add after a single one.")
+  "NIL, or a function that completes text. It gets a text and a cursor position. It returns the
+start of the part to complete, a list of completions, and what to add after a single completion.")
 
 (defun common-start (texts)
   "Return the longest common beginning of TEXTS, ignoring case."
@@ -138,7 +138,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
          (find (subseq text (1+ colon) end) (attribute-keys) :test #'string-equal))))
 
 (defun known-values (key)
-  "Return the possible values of the attribute named KEY if they are listed; NIL if KEY is NIL."
+  "Return the values that the attribute named KEY declares. Return NIL if there are none or no KEY."
   (and key (attribute-domain (declared-attribute key))))
 
 ;;; Lisp.
@@ -153,7 +153,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
     (do-external-symbols (symbol package names) (push (string-downcase symbol) names))))
 
 (defun meaningful-symbols ()
-  "Return the symbols of the current package. Omit its own that name no variable or function."
+  "Return the current package's symbols, except its own that name no variable or function."
   (let ((symbols '()))
     (do-symbols (symbol *package* symbols)
       (when (or (symbol-defined-p symbol) (not (eq *package* (symbol-package symbol))))

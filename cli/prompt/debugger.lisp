@@ -32,7 +32,7 @@
            (wait-on-semaphore (break-request-done break-request)))))
 
 (defun restart-named (word break-request)
-  "Return the restart of BREAK-REQUEST with the number or name prefix WORD. Signals BAD-LINE."
+  "Return BREAK-REQUEST's restart with number WORD or a name beginning with WORD. Signals BAD-LINE."
   (let ((number (ignore-errors (parse-integer word)))
         (restarts (break-request-restarts break-request)))
     (or (and number (<= 0 number) (nth number restarts))
@@ -116,7 +116,7 @@ other threads wait until FUNCTION returns."
                 session (lambda () (read-debug-line session other)))))))
 
 (defun announce-break (session break-request)
-  "Report BREAK-REQUEST, of another thread, in SESSION; its restarts, too, if the user can answer."
+  "Report another thread's BREAK-REQUEST in SESSION; with its restarts if the user can answer now."
   (if (or (break-state-own (session-break-state session))
           (not (eq break-request (first (session-breaks session)))))
       (report-waiting-break session break-request)
@@ -306,8 +306,7 @@ hook, not its debugger, if there is no terminal or window, or a break is being a
 ;;; From when to when.
 
 (defun continue-orphaned-break (session break-request)
-  "Continue the thread of BREAK-REQUEST, which only SESSION could answer, by the most likely
-restart, and report the restart."
+  "Continue BREAK-REQUEST, which only SESSION could answer, by its likeliest restart. Report that."
   (let ((restart (first (break-request-restarts break-request))))
     (post-call-to-thread session break-request
                          (lambda ()
@@ -318,7 +317,7 @@ restart, and report the restart."
                            (invoke-restart restart)))))
 
 (defun continue-orphaned-breaks (session)
-  "Continue all breaks that wait for no session but SESSION, which is over."
+  "Continue all breaks that wait only for SESSION, which is over."
   (dolist (break-request (session-breaks session))
     (unless (removef (break-request-sessions break-request) session)
       (continue-orphaned-break session break-request))))

@@ -140,8 +140,8 @@ Return true if no request is left that passes TEST."
            (or (session-patient-p session) (headless-p *simulation*)))))
 
 (defun await-session-commands (session)
-  "Wait until the commands that SESSION and its Lisp have issued are done, if SESSION waits for
-commands before it reads the next line."
+  "If SESSION waits for commands before it reads the next line, wait until the commands issued by
+SESSION and its Lisp are done."
   (let ((after-rewind (shiftf (session-after-rewind session) nil)))
     (when after-rewind (funcall after-rewind session)))
   (if (waits-for-commands-p session)
@@ -161,7 +161,7 @@ commands before it reads the next line."
        (paused-without-steps-p *simulation*)))
 
 (defun outcome-of-jobs (jobs lisp-p)
-  "Return :OK or :FAILED if JOBS and, if LISP-P is true, the requests of Lisp are done; else NIL."
+  "Return :OK or :FAILED once JOBS and, with LISP-P, Lisp's requests are done; before that, NIL."
   (cond ((notevery #'job-over-p jobs) nil)
         ((and lisp-p (not (no-command-pending-p))) nil)
         ((some #'job-failed-p jobs) :failed)

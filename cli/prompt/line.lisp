@@ -33,8 +33,7 @@ keywords, such as :FILE, stand for the text up to the next blank. CHOICES depend
 
 (defvar *line-commands* '() "The line commands made by DEFINE-LINE, in order of definition.")
 
-(defvar *aliases* '() "Lists (name text), in upper case and as typed: the aliases defined by
-ALIAS.")
+(defvar *aliases* '() "Lists (name text) of aliases; names in upper case, texts as typed.")
 
 (defun register-line (line)
   (let ((old (member (line-name line) *line-commands* :key #'line-name :test #'string=)))
@@ -47,7 +46,7 @@ ALIAS.")
   "Define the line command NAME, a string. Each of PARAMETERS is (variable type text [:optional]);
 optional ones come last. BODY runs with the variables bound to the arguments, NIL for arguments left
 out, and SESSION bound to the session. FAMILY, a keyword, says where HELP lists the line command.
-SENTENCE is its help; DETAILS, strings, are paragraphs below the parameters."
+SENTENCE is the command's help; DETAILS, strings, are paragraphs below the parameters."
   `(register-line
     (make-line :name ,(string-upcase name) :family ,family :sentence ,sentence
                :details (list ,@details)
@@ -146,7 +145,7 @@ SENTENCE is its help; DETAILS, strings, are paragraphs below the parameters."
                         (command-name command) (command-section command)))))
 
 (defun line-name-of (command)
-  "Return the name of the line command for COMMAND: manual E writes -DESIG for designators."
+  "Return the name of COMMAND's line command. As in manual E, -DESIGNATOR is cut to -DESIG."
   (let* ((name (string-upcase (command-prompt-name command)))
          (start (search "-DESIG" name :from-end t)))
     (if start (subseq name 0 (+ start 6)) name)))

@@ -7,14 +7,14 @@
 ;;; by itself, it continues until that code changes or is in another run.
 
 (defstruct tally
-  "How often an error was reported, the last time at TICK. CODE is the function, such as a kicker's,
-that runs by itself and signals the error, or NIL."
+  "How often an error was reported, the last time at TICK. CODE is NIL, or the recurring function
+that signals the error, such as a kicker."
   (count 0 :type (integer 0))
   (code nil)
   (tick 0 :type integer))
 
 (defun item-at-fault (message)
-  "Return the item of MESSAGE that names faulty code that runs by itself, as a kicker does; or NIL."
+  "Return the item of MESSAGE that names a faulty recurring function, such as a kicker; or NIL."
   (find-if #'recurring-code (message-items message)))
 
 (defun message-tick (message)
@@ -146,8 +146,7 @@ between, a message says how to hide such messages.")
     (not (or (null asker) (equal asker +prompt-asker+)))))
 
 (defun message-color (kind)
-  "Return the colour of messages of KIND: :ERROR, :WARNING, :MESSAGE, or :OTHERS for commands of
-plans and programs."
+  "KIND is :ERROR, :WARNING, :MESSAGE, or :OTHERS (commands of plans and programs)."
   (ecase kind (:error :red) (:warning :yellow) (:message :cyan) (:others :grey)))
 
 (defun full-message-text (message listener)
@@ -190,8 +189,7 @@ ended. Add file and line number to errors and warnings in a script."
         (when waiting (setf (third waiting) nil))))))
 
 (defgeneric error-counts-p (message listener)
-  (:documentation "True if LISTENER counts the error MESSAGE. Errors that a plan or program may
-handle do not count."))
+  (:documentation "True if LISTENER counts the error MESSAGE: no plan or program handles it."))
 
 (defun count-and-select-messages (listener messages)
   "Count the errors among MESSAGES, and return those that LISTENER is to show."
@@ -205,7 +203,7 @@ handle do not count."))
              (if (listener-quiet-p listener) (remove-if #'from-program-p messages) messages)))
 
 (defun notes-on-messages (listener messages)
-  "Return a list of notes on MESSAGES, shown by LISTENER: on repeated errors and too many messages."
+  "Return notes, a list of texts, on errors repeated in MESSAGES and on too many messages."
   (remove nil (append (loop for message in messages
                             collect (repetition-text message (listener-error-counts listener)))
                       (and (listener-terminal-p listener)

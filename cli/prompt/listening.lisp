@@ -37,8 +37,8 @@
            (with-lock (*sessions-lock*) *sessions*)))
 
 (defstruct (verdict (:constructor make-verdict (text &optional session)) (:copier nil))
-  "An item of a message that says how a plan has ended. SESSION is the session that started the
-plan, or NIL. The item prints as TEXT. SESSION shows the message even if SESSION is in another run."
+  "A message item that says how a plan has ended. SESSION is the session that started the plan, or
+NIL. The item prints as TEXT. SESSION shows the message even if SESSION is in another run."
   (text "" :type string :read-only t)
   (session nil :type (or null session) :read-only t))
 
@@ -55,7 +55,7 @@ in MESSAGE and the sessions in the run of MESSAGE; if there are none, SESSION."
       (list session)))
 
 (defun deliver-messages (session messages)
-  "Show MESSAGES, which SESSION has taken from a queue, each in the sessions from RECEIVERS."
+  "SESSION has taken MESSAGES from a queue. Show each in the sessions from MESSAGE-RECEIVERS."
   (let ((receivers (mapcar (lambda (message) (message-receivers message session)) messages)))
     (dolist (receiver (remove-duplicates (cons session (apply #'append receivers))))
       (print-messages receiver (loop for message in messages
@@ -245,7 +245,7 @@ name of the robot to command there. Return NIL if there is no such run."
 
 (defun announce-run (session simulation robot-name)
   "Tell the user of SESSION that the prompt continues with the robot ROBOT-NAME of SIMULATION, and
-show messages of SIMULATION. Do nothing if SESSION already does. Any thread may call this function."
+show messages of SIMULATION. Do nothing if SESSION shows them already. Callable in any thread."
   (unless (eq simulation (session-simulation session))
     (show-line-in-session session (format nil "From here on: ~A in ~A.~%" robot-name
                                           (run-description simulation)))
@@ -260,7 +260,7 @@ show messages of SIMULATION. Do nothing if SESSION already does. Any thread may 
         *world* (simulation-world simulation)))
 
 (defun continue-in-next-run (session)
-  "Only in SESSION's thread: if SESSION's run is over, continue in any run that follows."
+  "If SESSION's run is over, continue in a run that follows. Call this in SESSION's thread only."
   (when (and *simulation* (simulation-over *simulation*))
     (multiple-value-bind (simulation name) (run-to-continue-in *simulation* *prompt-robot*)
       (when simulation

@@ -3,14 +3,14 @@
 (in-package :ars-magna.cli)
 
 (defun existing-lisp-file (name)
-  "Return the path of the existing Lisp file NAME, which may lack its type; otherwise NIL."
+  "Return the path of the Lisp file NAME, with or without type; NIL if there is no such file."
   (let ((path (path-of-name name)))
     (and (pathname-name path)
          (or (existing-path path)
              (existing-path (make-pathname :type "lisp" :defaults path))))))
 
 (defun find-lisp-file (name)
-  "Return the path of the existing Lisp file NAME, which may lack its type. Signals BAD-LINE."
+  "Return the path of the Lisp file NAME, with or without type. Signals BAD-LINE if there is none."
   (or (existing-lisp-file name) (reject-line "There is no file ~A." name)))
 
 (defun foreign-file-text (path)
@@ -26,8 +26,8 @@ NIL if it contains Lisp or lines of the prompt."
 (defun check-form-of-file (form path)
   "Signal BAD-LINE if FORM, read while loading the file PATH, is the name of a line command."
   (when (and (symbolp form) (not (boundp form)) (line-command-named (symbol-name form)))
-    (reject-line "~A is a command of the prompt. The file looks like a script of lines: ars-magna ~
-                  ~A."
+    (reject-line "~A is a command of the prompt. The file looks like a script. Run it by: ~
+                  ars-magna ~A."
                  form (native-name path))))
 
 (defun start-of-form (text start)

@@ -62,7 +62,7 @@
         (t "paused")))
 
 (defun trial-pace (trial)
-  "Return how time passes in TRIAL, :RUNNING, :PAUSED or :ENDED; and the rate of time, or NIL."
+  "Return two values: how TRIAL passes time (:RUNNING, :PAUSED or :ENDED), and its rate or NIL."
   (cond ((open-trial-result trial) :ended)
         ((plusp (open-trial-steps trial)) :running)
         ((open-trial-running-p trial) (values :running (open-trial-rate trial)))
@@ -98,8 +98,8 @@
   "If the run in TRIAL is no longer in the state BEFORE, report that lines have changed the run."
   (unless (or (open-trial-changed trial) (every #'eql before (trial-state)))
     (setf (open-trial-changed trial) (simulation-tick *simulation*))
-    (format (session-console session) "~&~:[From here on, this is not the experiment's run any ~
-                                       more~;This has no effect: the trial is over~].~%"
+    (format (session-console session) "~&~:[The run was changed: it is not the experiment's run ~
+                                       any more~;The change has no effect: the trial is over~].~%"
             (open-trial-result trial))))
 
 ;;; Lines.

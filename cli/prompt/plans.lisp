@@ -27,8 +27,7 @@ waits for in vain, and what could be done."
   (over (make-semaphore "plan over") :read-only t)
   (told (make-semaphore "plan's end told") :read-only t))
 
-(defvar *plan-jobs* '() "The plans that the prompt has started and whose ends it has not reported
-yet.")
+(defvar *plan-jobs* '() "The plans started by the prompt whose ends are not reported yet.")
 (defvar *plan-jobs-lock* (make-lock "plans of prompts"))
 
 (defun plan-over-p (job)
@@ -130,7 +129,7 @@ yet.")
                            about.~@[ ~A~]"
                       waits advice))
           (warning-set (make-plan-verdict
-                        job "~A. Neither the robot nor time will bring that about, but you may. ~
+                        job "~A. Neither the robot nor time can end this wait, but you can. ~
                              STOP-PLAN ends the plan.~@[ ~A~]"
                         waits advice))))))
 

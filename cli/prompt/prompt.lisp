@@ -177,7 +177,7 @@ whose user is lost: users of other sessions are asked when the session is over."
     (handle-interrupt)))
 
 (defun interrupt-session (session)
-  "From another thread, press Control-C in SESSION: clear the typed line or end the running one."
+  "From another thread, act as Control-C in SESSION: clear the typed line or end the running one."
   (cond ((reading-line-p (session-input session)) (send-key (session-input session) :control-c))
         ((session-thread session)
          (interrupt-thread (session-thread session) #'interrupt-own-line)))

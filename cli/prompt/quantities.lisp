@@ -80,7 +80,7 @@ digits, the number is 1, or -1 after a minus sign."
       (values 1 text)))
 
 (defun joined-quantity (name)
-  "Return the number and unit, a list or NIL, of NAME, such as 90DEG; NIL if NAME is no quantity."
+  "Divide NAME into a number and a unit: 90DEG, 2PI ... Return NIL if NAME is no such quantity."
   (multiple-value-bind (number end) (leading-number name)
     (when (and number (< end (length name)))
       (multiple-value-bind (factor rest)
@@ -92,7 +92,7 @@ digits, the number is 1, or -1 after a minus sign."
 ;;; As the next word.
 
 (defun unit-after (text position)
-  "Return the unit, a list, that follows POSITION and blanks in TEXT, and its end; or else NIL."
+  "Return the unit, a list, after POSITION and blanks in TEXT, and its end; NIL without a unit."
   (let* ((start (or (position-if-not #'blank-character-p text :start position) (length text)))
          (end (word-end text start))
          (unit (find-unit (subseq text start end))))

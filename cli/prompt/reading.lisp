@@ -28,8 +28,8 @@
   (and (breaks-for-session session) (not (valid-at-any-break-p line))))
 
 (defun read-typed-line (session before)
-  "Return the next line typed in SESSION, or NIL at the end. Put the line into the history. If
-BEFORE, a text or NIL, is a text, join the line to it."
+  "Return the next line typed in SESSION, or NIL at the end. Put the line into the history; unless
+BEFORE is NIL, append it to the text BEFORE there."
   (let* ((line (progn
                  ;; Forms that span lines are kept whole.
                  (unless before (save-history (session-input session)))

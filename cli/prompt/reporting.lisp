@@ -9,10 +9,10 @@
 (defstruct (account (:constructor make-account (file &optional console)) (:copier nil))
   "A record of which line a session is running. FILE is the name of a script or NIL. The running
 line has the text TEXT and the number LINE, which is 0 for an option. ERRORS is the number of errors
-before that line. CONSOLE is the console that gets objects, or NIL. WAITING are earlier lines whose
-work waits for time to pass, the newest first. PLANS holds pairs of a plan's asker and the number of
-the line that has begun the plan. TROUBLE-LINE is the number of the faulty line in a running form,
-or NIL if the number is not known."
+before that line. CONSOLE is the console that gets JSON objects, or NIL. WAITING are earlier lines
+whose work waits for time to pass, the newest first. PLANS holds pairs of a plan's asker and the
+number of the line that has begun the plan. TROUBLE-LINE is the number of the faulty line in a
+running form, or NIL if the number is not known."
   (file nil :type (or null string) :read-only t)
   (console nil :type (or null console) :read-only t)
   (line 0 :type fixnum)
@@ -125,7 +125,7 @@ and then :OK or :FAILED. Otherwise END is NIL."
 
 ;; Equal to that, but another object: an error of the line's requests is the line's.
 (defparameter *line-asker* (copy-seq +prompt-asker+)
-  "The asker of requests that lines other than Lisp make, in sessions that do not count lines.")
+  "The asker of requests made by lines that are not Lisp, in sessions that do not count lines.")
 
 (defvar *lines-of-askers* (make-hash-table :test 'eq :weakness :key :synchronized t)
   "A table of the askers of counted lines. Values: lists (account line-number not-lisp-p).")
@@ -141,7 +141,7 @@ be NIL. TYPED-P is true for a line that is not Lisp."
         (t text)))
 
 (defun line-asker-p (asker)
-  "True if ASKER, the asker of a message, belongs to lines that are not Lisp."
+  "True if ASKER is the asker of requests made by lines that are not Lisp."
   (or (eq *line-asker* asker) (third (gethash asker *lines-of-askers*))))
 
 (defun about-line-request-p (message)
@@ -150,7 +150,7 @@ be NIL. TYPED-P is true for a line that is not Lisp."
     (and (equal asker +prompt-asker+) (gethash asker *lines-of-askers*) t)))
 
 (defun lisp-asker-p (asker)
-  "True if ASKER, the asker of a request, belongs to Lisp in lines."
+  "True if ASKER is the asker of requests made by Lisp in lines."
   (and (equal asker +prompt-asker+) (not (line-asker-p asker))))
 
 (defun asked-by-lisp-of-line-p (asker account)

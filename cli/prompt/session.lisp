@@ -7,7 +7,7 @@
 
 (defstruct (break-request (:constructor make-break-request (condition restarts thread sessions))
                           (:copier nil))
-  "A program that has broken and waits in THREAD until the user of one of SESSIONS says how to
+  "A break of a program, which waits in THREAD until the user of one of SESSIONS says how to
 continue. CALL is the function that THREAD is to call next."
   (condition nil :type condition :read-only t)
   (restarts '() :type list :read-only t)

@@ -75,7 +75,7 @@
     (loop for keys in *options-that-exclude-others*
           for given = (remove-if-not #'given-p keys)
           do (when (rest given)
-               (reject-usage "~A and ~A do not go together." (option-with-key (first given))
+               (reject-usage "~A excludes ~A. Give only one." (option-with-key (first given))
                              (option-with-key (second given)))))))
 
 ;;; Running here.

@@ -12,8 +12,8 @@
   (find name experiments :key #'experiment-name :test #'same-name-p))
 
 (defun experiments-in-file (file experiments)
-  "Return those of EXPERIMENTS that FILE itself defines. If FILE defines none, return all of
-EXPERIMENTS, which files loaded by FILE define."
+  "Return those of EXPERIMENTS that FILE itself defines. If there are none, return all EXPERIMENTS:
+files loaded by FILE define them."
   (or (remove (native-name (truename file)) experiments :key #'experiment-file :test-not #'equal)
       experiments))
 
@@ -72,7 +72,7 @@ experiments, NAME names the one to return. Signals BAD-LINE if there is no such 
 ;;; What is said of results.
 
 (defun report-results (results plot)
-  "Print RESULTS; if they have a directory, write the text and, if PLOT, pictures into files there."
+  "Print RESULTS. If they have a directory, write the text there, too; with PLOT, also pictures."
   (print-results results *standard-output*)
   (when (results-directory results)
     (overwrite-file (lambda (out) (call-with-page-width (lambda () (print-results results out))))

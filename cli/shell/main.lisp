@@ -63,8 +63,8 @@ of --load now, because they may define it. Signals USAGE-ERROR if the robot is s
                                (bad-line-text condition))))))))
 
 (defun run-headless (session robot-name seed)
-  "Run the lines of SESSION, a batch, in a fresh world. Return the name of the robot that a line
-WORLD has chosen to continue with, or NIL."
+  "Run the lines of SESSION, a batch, in a fresh world. If a line WORLD has chosen another robot to
+continue with, return its name, else NIL."
   (setf (session-next-robot session) nil
         *prompt-robot* robot-name)
   (import-robot-names (robot-names-in-same-world robot-name))

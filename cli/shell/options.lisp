@@ -110,8 +110,7 @@ OTHERS is true, an argument that is not an option becomes (:other argument). Sig
                                        "ars-magna" (format nil "cli/shell/~A" name)))))
   "Lists (name text): files of this folder, as saved in the program.")
 
-(defparameter *version* (asdf:component-version (asdf:find-system "ars-magna"))
-  "The version of this program.")
+(defparameter *version* (asdf:component-version (asdf:find-system "ars-magna")))
 
 (defun shell-text (name)
   (second (assoc name *shell-texts* :test #'string=)))

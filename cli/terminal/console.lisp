@@ -120,8 +120,7 @@ newest first."))
   (multiple-value-call function (console-line console) stream (funcall (console-window console))))
 
 (defgeneric erase-typed-line (console stream)
-  (:documentation "Erase the line being typed, if it is shown, and move the cursor to the end of the
-output above.")
+  (:documentation "Erase the typed line, if shown. Move the cursor to the end of the output.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
       (when (and line (drawn-line-shown line))
@@ -130,8 +129,7 @@ output above.")
           (format stream "~A~A" (cursor-up-code 1) (cursor-right-code (cursor-column console))))))))
 
 (defgeneric draw-typed-line (console stream)
-  (:documentation "Draw the line being typed below the output, if there is such a line and it is not
-shown.")
+  (:documentation "Draw the line being typed below the output, unless it is shown already.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
       (when (and line (null (drawn-line-shown line)))

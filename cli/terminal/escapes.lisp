@@ -94,7 +94,7 @@ only a terminal has colours, and only if the environment variable NO_COLOR is no
 ;;; What is pasted.
 
 (defun paste-marking-code (on)
-  "Return the code that makes a terminal mark pasted text, or no longer mark it if ON is NIL."
+  "Return the code that switches bracketed paste mode (pasted text is marked) on, or off."
   (format-escape-code "?2004~:[l~;h~]" on))
 
 (defun paste-end-code ()
@@ -150,7 +150,7 @@ only a terminal has colours, and only if the environment variable NO_COLOR is no
 
 (defun breaking-point (line columns)
   "Return the position of the blank at which to break LINE. The part before that blank has at most
-COLUMNS, if possible. NIL if LINE fits into COLUMNS or has no blank."
+COLUMNS, if possible. Return NIL if LINE fits into COLUMNS or has no blank."
   (loop with start = (position #\Space line :test #'char/=)
         with best = nil and taken = 0
         for char across line
@@ -184,7 +184,7 @@ of these lines. Further lines are indented like LINE."
         (list line))))
 
 (defun text-broken-at-blanks (text columns &optional (used 0))
-  "Return TEXT with lines broken at blanks to at most COLUMNS; the first line has USED fewer."
+  "Return TEXT with lines of at most COLUMNS, broken at blanks; the first has USED columns fewer."
   (loop with lines = (uiop:split-string text :separator '(#\Newline))
         for line in lines
         for first = (- columns used) then columns

@@ -175,8 +175,7 @@ the end of the input. Signals BAD-LINE if the line is too long.")
    (octets :initform "" :accessor queued-string)
    (start :initform 0 :accessor queued-start)
    (over-p :initform nil :accessor queued-over-p))
-  (:documentation "An input stream of octets that other threads supply by CHANGE-UNREAD-OCTETS.
-Reading waits for octets."))
+  (:documentation "An input stream of octets supplied by other threads. Reading waits for octets."))
 
 (defun unread-octets (stream)
   (subseq (queued-string stream) (queued-start stream)))

@@ -81,11 +81,11 @@
                          collect (list key (value-text value number-text))))))
 
 (defun designator-kind-text (designator)
-  "Return the kind of DESIGNATOR, a property list from STATUS, as text, such as Local Object."
+  "Return text on the kind of DESIGNATOR, a property list from STATUS, such as Local Object."
   (format nil "~:(~A ~A~)" (getf designator :type) (getf designator :of)))
 
 (defun designator-bearing-text (designator)
-  "Return the distance and the angle of DESIGNATOR, a property list from STATUS, as text."
+  "Return text on the distance and angle of DESIGNATOR, a property list from STATUS."
   (format nil "~,2F, ~,2F" (zero-if-tiny (getf designator :distance))
           (zero-if-tiny (getf designator :angle))))
 
@@ -101,7 +101,7 @@
 
 (defun rate-text (rate)
   (if (eq rate :free)
-      "as fast as it can"
+      "as fast as possible"
       (format nil "~A ticks a second" (plain-number-text rate))))
 
 ;;; Running text.
@@ -148,11 +148,11 @@ before TEXT on the first line, or on a separate line if HEAD is too long."
 ;;; A live world is read between two ticks.
 
 (defun call-with-time-stopped (function)
-  "Call FUNCTION, which writes to the standard output, while the world stands still."
+  "Call FUNCTION, which writes to the standard output, while no simulated time passes."
   (let ((simulation (current-simulation)))
     (write-string (asking (simulation)
                     (with-output-to-string (*standard-output*) (funcall function))))))
 
 (defmacro with-time-stopped (&body body)
-  "Run BODY, which writes to standard output, while the world stands still."
+  "Run BODY, which writes to the standard output, while no simulated time passes."
   `(call-with-time-stopped (lambda () ,@body)))

@@ -13,8 +13,7 @@
 ;;; Streams.
 
 (defgeneric octets-within-p (stream seconds)
-  (:documentation "Wait up to SECONDS until STREAM has input or is at its end. Return true if that
-happens.")
+  (:documentation "Wait up to SECONDS for input in STREAM or its end. Return true if one comes.")
   (:method ((stream stream) seconds)
     (wait-for-input stream seconds)))
 
@@ -103,7 +102,7 @@ third press does. The second press does, too, if the first had no effect and was
       (end-process 130))))
 
 (defun accept-interrupts ()
-  "Make Control-C interrupt this thread, the process's first."
+  "Make Control-C interrupt this thread, the first thread of the process."
   (let ((thread (current-thread)))
     (call-on-interrupt (lambda ()
                          (note-interrupt)
