@@ -69,7 +69,7 @@ of the cursor. The function returns the new text, the new position and the kille
           (+ point (length string))))
 
 (defun delete-from-text (text start end)
-  "Return TEXT without the characters from START to END, and START, the new cursor position."
+  "Return TEXT without its part from START to END, and the new position of the cursor, START."
   (values (concatenate 'string (subseq text 0 start) (subseq text end)) start))
 
 (defun kill-from-text (text start end)

@@ -119,8 +119,8 @@ Control-C and similar keys are signals instead.")
 ;;; Keys that do other things.
 
 (defvar *action-keys* (make-hash-table)
-  "Table from keys to functions of the input stream. If a function returns a text or :EOF, its key
-ends the line; other values are ignored.")
+  "Table from keys to functions, which take the input stream. If a function returns a text or :EOF,
+its key ends the line; other values are ignored.")
 
 (define-key *action-keys* (:return) (stream)
   "End the line."

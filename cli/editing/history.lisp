@@ -24,7 +24,7 @@ appended after a newline, or NIL at the end of the stream."))
   (loop for char across line do (vector-push-extend char text)))
 
 (defun make-growing-text-stream (text start more)
-  "Return a stream of TEXT from START on. MORE returns further lines, as in GROWING-TEXT."
+  "Return a stream of TEXT from START on. MORE returns more lines, as in GROWING-TEXT."
   (make-instance 'growing-text :text (extensible-text text) :position start :more more))
 
 (defmethod stream-read-char ((stream growing-text))

@@ -133,7 +133,7 @@ other threads wait until FUNCTION returns."
              (show-prompt console "Robot> "))))
     (signal-semaphore (break-request-done break-request))))
 
-(defvar *own-process-p* nil "True in a process that does nothing but this program.")
+(defvar *own-process-p* nil "True in a process that runs only this program.")
 
 (defun repl-break-message (sessions break-request)
   "If all SESSIONS are windows, return a message on BREAK-REQUEST for the error output, because the

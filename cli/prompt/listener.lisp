@@ -57,7 +57,7 @@ that signals the error, such as a kicker."
   (maphash (lambda (text tally) (unless (tally-code tally) (remhash text counts))) counts))
 
 (defun merge-counts (counts others)
-  "Copy counts from the table OTHERS into the table COUNTS where they are higher."
+  "Raise the counts in the table COUNTS that are lower than in the table OTHERS."
   (maphash (lambda (text tally)
              (let ((own (gethash text counts)))
                (when (or (null own) (< (tally-count own) (tally-count tally)))
@@ -67,8 +67,8 @@ that signals the error, such as a kicker."
 ;;; Plans may give more messages than a user can read.
 
 (define-constant +many-messages+ 50
-  :documentation "After this many messages from commands of plans and programs, with no line in
-between, a message says how to hide such messages.")
+  :documentation "The number of messages from commands of plans and programs, without a line in
+between, after which a hint says how to hide them.")
 
 ;;;; Messages
 
@@ -110,7 +110,7 @@ between, a message says how to hide such messages.")
                       issue.~%"))))
 
 (defun reset-message-count (listener)
-  "Let LISTENER count the messages of plans and programs from 0 again, unless the hint was given."
+  "Set LISTENER's count of messages of plans and programs to 0, unless the hint was given."
   (when (< (listener-others-shown listener) +many-messages+)
     (setf (listener-others-shown listener) 0)))
 

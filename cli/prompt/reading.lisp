@@ -104,7 +104,7 @@ long, return an outline and the condition LINE-TOO-LONG."
     (line-too-long (condition) (values (line-outline condition) condition))))
 
 (defun skip-forms (stream)
-  "Read STREAM, which gets further lines as needed, until no form is open at the end of a line."
+  "Read STREAM, which gets more lines as needed, until no form is open at the end of a line."
   (loop with depth = 0
         until (and (zerop depth) (<= (length (grown-text stream)) (grown-position stream)))
         do (case (skip-item stream)

@@ -7,7 +7,7 @@
 ;;; account, NIL stands for it and nothing is reported.
 
 (defstruct (account (:constructor make-account (file &optional console)) (:copier nil))
-  "A record of which line a session is running. FILE is the name of a script or NIL. The running
+  "A record of the line that a session is running. FILE is the name of a script or NIL. The running
 line has the text TEXT and the number LINE, which is 0 for an option. ERRORS is the number of errors
 before that line. CONSOLE is the console that gets JSON objects, or NIL. WAITING are earlier lines
 whose work waits for time to pass, the newest first. PLANS holds pairs of a plan's asker and the

@@ -57,7 +57,7 @@ is optional, an empty value counts as none.")
         (values argument nil))))
 
 (defun read-option-value (option arguments table)
-  "Return the value of OPTION, an element of TABLE, and the rest of ARGUMENTS, which follow OPTION."
+  "Return the value of OPTION, an element of TABLE. ARGUMENTS follow it; also return their rest."
   (destructuring-bind (name key parser &optional optional) option
     (declare (ignore key))
     (cond ((null parser) (values nil arguments))
@@ -69,7 +69,7 @@ is optional, an empty value counts as none.")
           (t (values (first arguments) (rest arguments))))))
 
 (defun read-option (argument arguments table)
-  "Return (key value) for the option ARGUMENT, and the rest of ARGUMENTS, which follow ARGUMENT."
+  "Return (key value) for the option ARGUMENT. ARGUMENTS follow it; also return their rest."
   (multiple-value-bind (name value) (split-option argument)
     (let ((option (or (find name table :key #'first :test #'string=)
                       (reject-usage "~A is not an option.~@[ Did you mean ~A?~]" name

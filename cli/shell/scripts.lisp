@@ -85,7 +85,7 @@ the session cannot be ended, end this process."
           (end-process +time-limit-status+))))))
 
 (defun report-running-code-on-interrupt (session calls)
-  "Let Control-C report users' code running in SESSION (from CALLS) before it ends this process."
+  "Make Control-C report the users' code in SESSION, from CALLS, before it ends this process."
   (setf *before-ending-at-once*
         (lambda ()
           (report-stop session (running-code-text session calls) "Control-C was pressed again"))))

@@ -16,7 +16,7 @@
             (first (uiop:raw-command-line-arguments)))))
 
 (defun save-program (name)
-  "Save this program, as it is now, as the executable file NAME, and end this process."
+  "Save the program in its present state as the executable file NAME, and end this process."
   (freeze-file-digests)
   (setf *saved-by-user-p* t)
   (let ((path (native-path name)))

@@ -63,7 +63,7 @@ newest first."))
         (stream-error (trouble) (setf (console-trouble console) trouble))))))
 
 (defun discard-output (console)
-  "Once no thread writes to CONSOLE, discard all further output, as the stream may be closed."
+  "Wait until no thread writes to CONSOLE. Discard later output, as the stream may be closed."
   (with-lock ((console-lock console)) (setf (console-trouble console) :over)))
 
 (defun call-with-console (function console)
@@ -139,7 +139,7 @@ newest first."))
         (call-with-line-and-window #'draw-line console stream)))))
 
 (defgeneric finish-typed-line (console stream)
-  (:documentation "Leave the line being typed as it is; further output begins below.")
+  (:documentation "Leave the line being typed as it is; later output begins below.")
   (:method ((console console) stream)
     (let ((line (console-line console)))
       (erase-typed-line console stream)
@@ -200,7 +200,7 @@ newest first."))
     (finish-output stream)))
 
 (defun end-typed-line (console)
-  "Leave what was typed as it is; further output begins below."
+  "Leave what was typed as it is; later output begins below."
   (with-console (stream console)
     (finish-typed-line console stream)
     (finish-output stream)

@@ -60,7 +60,7 @@ last" :writable))
     (values (nreverse rows) place-row place-column)))
 
 (defun visible-rows (rows place-row height)
-  "Return those of ROWS around PLACE-ROW that fit into HEIGHT, and the number of rows before them."
+  "Return the ROWS around PLACE-ROW that fit into HEIGHT, and the number of rows before them."
   (let ((start (max 0 (min (- place-row (floor height 2)) (- (length rows) height)))))
     (values (subseq rows start (min (length rows) (+ start height))) start)))
 

@@ -14,7 +14,7 @@
     ("GRAY" . "90") ("SILVER" . "90") ("ORANGE" . "33") ("BROWN" . "33") ("GOLD" . "93")
     ("PINK" . "95") ("PURPLE" . "35") ("MAGENTA" . "35") ("TURQUOISE" . "36")
     ("BOLD" . "1") ("REVERSE" . "1;7"))
-  "Pairs (name . code) of the colours and styles of a terminal.")
+  "Pairs (name . code): the terminal's codes for colours and styles.")
 
 (defconstant +escape+ #\Escape "The beginning of the codes of terminals and of their keys.")
 
@@ -173,7 +173,7 @@ gap after a label, as in \"Time:    Tick 0\", does not count."
 
 (defun break-line-at-blanks (line first columns)
   "Break LINE at blanks into lines of at most COLUMNS, the first of at most FIRST. Return the list
-of these lines. Further lines are indented like LINE."
+of these lines. All lines are indented like LINE."
   (let ((place (breaking-point line first))
         (indent (or (position #\Space line :test #'char/=) 0)))
     (if (and place (not (table-line-p line indent)))

@@ -18,7 +18,7 @@
     (wait-for-input stream seconds)))
 
 (defun say-on-error-output (text)
-  "Write TEXT to the error output as a line that names the program, whatever the streams' state."
+  "Write the program's name and TEXT to the error output, whatever the state of the streams."
   (flet ((write-to (output)
            (write-string (concatenate 'string "ars-magna: " text '(#\Newline)) output)
            (finish-output output)))
@@ -82,11 +82,11 @@ or window, where the user may press Control-C at will.")
 (defvar *interrupt-times* '() "When Control-C was pressed, in seconds, newest first.")
 
 (defparameter *interrupt-window-seconds* 5
-  "The number of seconds within which further presses of Control-C end this process at once.")
+  "The number of seconds within which repeated presses of Control-C end this process at once.")
 
 (defun exit-at-once-p (now times)
   "True if Control-C, pressed at NOW and earlier at TIMES, should end this process at once. The
-third press does. The second press does, too, if the first had no effect and was over 1/3 s before."
+third press does. So does the second if the first had no effect and was over 1/3 s earlier."
   (and times
        (or (rest times)
            (and (null *interrupts-while-ending*) (< 1/3 (- now (first times)))))))
