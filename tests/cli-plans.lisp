@@ -60,7 +60,7 @@
 
 (test plan.a-deadlock-is-an-error-in-a-line
   (is-true (has-words-p (complaint "plan mope") "Deadlock" "mope" "godot" "stopped"))
-  (is (equal "No plan is under way. PLAN lists the plans that there are."
+  (is (equal "No plan is under way. PLAN lists all plans."
              (first (last (type-batch "plan mope" "plans"))))))
 
 (test plan.a-deadlock-in-a-line-has-advice
@@ -210,7 +210,7 @@
     (is (string= "dawdle succeeded: 1.5" (first lines)))
     (is-true (has-words-p (second lines) "stumble failed" ":THIN-ICE"))
     (is-true (has-words-p (third lines) "Deadlock" "mope" "godot" "was stopped"))
-    (is (equal '("No plan is under way. PLAN lists the plans that there are.") (nthcdr 3 lines)))))
+    (is (equal '("No plan is under way. PLAN lists all plans.") (nthcdr 3 lines)))))
 
 (test live.another-is-back-at-once
   (let ((text (joined (type-live '("plan dawdle 1000000000" "plans" "stop-plan" "quit")))))

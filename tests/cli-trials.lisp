@@ -35,7 +35,7 @@
            (type-lines (list (format nil "trial trying ~A 2 ~A" way path) "plans" "step" "map 3"
                              "plan-tree" "status" "things" "resume")
                        :batch t)
-         (is-true (find "The result is as in its row." lines :test #'string=) "~A: ~S" way lines)
+         (is-true (find "The result equals its row." lines :test #'string=) "~A: ~S" way lines)
          (is (>= 1 errors) "none but that there is no plan in ~A" way))))))
 
 (test trial.says-when-it-is-changed

@@ -12,7 +12,7 @@
 ;;; The world.
 
 (defun add-trolley (name places)
-  "Put a trolley NAME, which blocks robots, at one of PLACES, points of the world. NAME and the
+  "Put a trolley called NAME at one of PLACES, a list of points. It blocks robots. NAME and the
 world's seed decide where. People move the trolley among PLACES at times. Return the trolley."
   (make-new-thing name (cons *world* (roll-element places (dice-for name)))
                   (list '(:size 30) '(:weight 25) '(:substance metal) '(:obsmove #t)

@@ -72,7 +72,7 @@ CHART the way from START to GOAL leads through DOOR."
          (<= cost (- (way-cost chart start goal) (way-cost chart (middle-of door) goal))))))
 
 (defun step-to-doorway (chart way door goal)
-  "Return the first step of a robot on WAY, which ends in DOOR, a doorway on the way to GOAL."
+  "Return a robot's first step on WAY, which ends in the doorway DOOR. DOOR leads to GOAL."
   (let* ((start (first way))
          (before (point-before-doorway (chart-map chart) door
                                        (direction-from (middle-of door) (first (last way 2))))))

@@ -154,7 +154,7 @@ then take the step NEXT with the last designator. After LOOKS searches take the 
                       #'check-target))
 
 (defun grasp-tracked-thing (errand designator)
-  "Grasp DESIGNATOR, which the camera tracks. If the thing is too heavy, leave it: it may be wrong."
+  "Grasp DESIGNATOR, which the camera tracks. If the thing is too heavy, look for another one."
   (hand-grasp-desig (errand-hand errand) (errand-camera errand) designator
     (continuation (err hand designator)
       (call-unless-interrupted errand err

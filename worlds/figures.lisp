@@ -130,7 +130,7 @@ the map to draw; NIL is the whole map.")
             (* rate (- 1 rate)))))
 
 (defun paired-comparison-lines (firsts bests)
-  "Return lines that compare outcomes seed by seed: BESTS with rollouts, FIRSTS by the short way."
+  "Return lines that compare BESTS, outcomes with rollouts, with FIRSTS, outcomes by the short way."
   (let* ((more (count t (map 'list (lambda (first best)
                                      (and (in-time-p best) (not (in-time-p first))))
                              firsts bests)))

@@ -60,7 +60,6 @@ the robot has received more commands, another program has taken it over."
     (point-as-list point)))
 
 (defun check-go-to-arguments (robot x y continuation start tolerance patience)
-  "Signal WRONG-ARGUMENT for the first argument that ROBOT-GO-TO cannot use."
   (check-arguments 'robot-go-to
                    (list (typep robot 'robot) "robot" robot "a robot")
                    (list (realp x) "x" x "a number of metres from the left")
@@ -130,7 +129,7 @@ OTHERWISE. If the command was interrupted or another program took over the robot
                 (drive-straight journey (distance-left (journey-me journey) point) next))))
 
 (defun drive-metres (claim metres top continuation)
-  "Drive the robot of CLAIM METRES straight ahead, in whole ticks, at most TOP metres per tick.
+  "Drive the robot of CLAIM straight ahead by METRES, in whole ticks, at most TOP metres per tick.
 CONTINUATION gets an error code or NIL, and the robot."
   (let ((ticks (if (plusp top) (max 1 (ceiling metres top)) 1)))
     (robot-set-speed (robot-to-command claim) (/ metres ticks)
@@ -140,7 +139,7 @@ CONTINUATION gets an error code or NIL, and the robot."
             (robot-go-forward (robot-to-command claim) ticks continuation))))))
 
 (defun drive-straight (journey distance next)
-  "Drive the robot of JOURNEY DISTANCE metres ahead, then call NEXT, a function of JOURNEY."
+  "Drive the robot of JOURNEY ahead by DISTANCE metres, then call NEXT, a function of JOURNEY."
   (if (< distance .05)
       (funcall next journey)
       (drive-metres journey distance driving-speed*

@@ -58,7 +58,7 @@ point. Fails with :NOT-FOUND, :TOO-HEAVY, :BIN-FULL or :CANNOT-GET-THERE."
 ;;; Tidying.
 
 (def-interp-proc tidy-once (me places description camera hand bin)
-  "Find a thing near PLACES that fits DESCRIPTION and stow it in BIN. Return true if one was found."
+  "Find a thing near PLACES that fits DESCRIPTION and stow it in BIN. Return true if it was found."
   (handle-failure ((:not-found () (return nil)))
     (find-and-take me places description :camera camera :hand hand :bin bin :rounds 5)))
 

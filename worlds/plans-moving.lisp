@@ -164,8 +164,8 @@ error code, or NIL when the robot is there."
       (drive-towards me (second step))))
 
 (def-interp-proc get-free (me stopped)
-  "Get the robot of the reckoning ME away from the obstacle that STOPPED it, :WALL or :THING. Wait
-for a thing to move away; every third time turn and drive off."
+  "Get the robot of the reckoning ME away from an obstacle. STOPPED is its kind, :WALL or :THING.
+Wait for a thing to move away; every third time turn and drive off."
   (let ((trouble (incf (reckoning-trouble me))))
     (if (eq stopped :thing)
         (wait-time (* 3 (mod trouble 3))))
@@ -189,7 +189,6 @@ for a thing to move away; every third time turn and drive off."
                               name points "a list of points (x y), such as ((3 4) (5 6))")))
 
 (defun check-tolerance-and-patience (operator tolerance patience)
-  "Signal WRONG-ARGUMENT for the first argument that OPERATOR cannot use."
   (check-arguments operator
                    (list (and (realp tolerance) (<= 0 tolerance)) ":tolerance" tolerance
                          "a number of metres, from 0")

@@ -159,8 +159,8 @@ the face's axis (0 for x, 1 for y) and its coordinate. Else return NIL."
           when (/= a b) do (return (values axis (max a b))))))
 
 (defun correct-by-wall (me)
-  "Move the estimate of ME, whose robot has met a wall ahead, to the nearest wall ahead or behind on
-its map. Return T. If no wall is within two metres, change nothing and return NIL."
+  "Correct ME, whose robot has met a wall: move the estimate to the nearest wall ahead or behind.
+Return T. If no wall is within two metres, change nothing and return NIL."
   (flet ((crossing (distance)
            (multiple-value-list
             (wall-crossed (chart-map (reckoning-chart me))

@@ -46,7 +46,7 @@ metres; NIL if there is no way."
 ;;; Looking round, and checking.
 
 (def-interp-proc look-near-and-far (camera description)
-  "Return a designator of something CAMERA sees that fits DESCRIPTION, local or not, or NIL."
+  "Return a designator of a thing, near or far, that CAMERA sees and that fits DESCRIPTION; or NIL."
   (or (first (look-for-things camera :local description))
       (first (look-for-things camera :non-local description))))
 
@@ -150,6 +150,6 @@ this round. A round visits all PLACES; there are ROUNDS rounds."
 
 (def-interp-proc search-watchfully (description places
                                     &key (rounds 10) start (camera (widest-camera)))
-  "Search as SEARCH-NEAREST does, but also look with CAMERA while driving, and drive to what it sees
-at once. Fails with :ONLY-ONE-CAMERA without another camera to guide the robot through doorways."
+  "Search as SEARCH-NEAREST does, but also look with CAMERA while driving, and drive at once to what
+CAMERA sees. Fails with :ONLY-ONE-CAMERA if no other camera can guide the robot."
   (search-places description places #'nearest-place 'look-on-the-way rounds start camera))

@@ -23,7 +23,7 @@
                                          (things-at *world* (+ x dx) (+ y dy)))))))
 
 (defun random-clear-point (dice)
-  "Return the middle, a list (x y), of a random cell of the current world without walls or obstacles
+  "Return the middle (x y) of a random cell of the current world that has no walls or obstacles
 around. DICE choose the cell; all such cells are equally likely."
   (let ((map (ars-magna.world:world-map *world*)))
     (loop repeat 10000

@@ -43,7 +43,7 @@
 ;;; the acting part, 0 if left out, or nothing if the robot acts; then other arguments.
 
 (defun part-variable-p (by)
-  "True if BY, a list (variable type) of a method, stands for a part of the robot."
+  "True if BY, a parameter (variable type) of a method, takes a part of the robot."
   (and (second by) (part-type-p (type-keyword (second by)))))
 
 (defun method-usage (name method)

@@ -80,7 +80,7 @@ place type, attribute, value, error code, name of Lisp ..."
 ;;; Searching.
 
 (defparameter *largest-topic-count* 40
-  "The largest number of topics that APROPOS lists because only their descriptions have the word.")
+  "The largest number of topics with the word only in their descriptions that APROPOS lists.")
 
 (defun topics-matching (word)
   "Return two lists: topics with WORD in their names, and those with WORD only in descriptions."

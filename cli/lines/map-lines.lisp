@@ -21,7 +21,7 @@
           (append (text-layers) '(:legend) (mapcar #'picture-layer-name (text-layers)))))
 
 (defun complete-word (text words line takes)
-  "Return, as a keyword, the first of WORDS that begins with TEXT, a word typed after LINE. Signals
+  "Return the first of WORDS that begins with TEXT, as a keyword. TEXT was typed after LINE. Signals
 BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE accepts."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word)) words)))
     (unless word
@@ -34,7 +34,7 @@ BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE ac
     (and (realp datum) (integer-if-whole datum))))
 
 (defun map-region-options (numbers)
-  "Return the options of TEXT-MAP for NUMBERS: a typed radius, a typed region, or an empty list."
+  "Return the options of TEXT-MAP for NUMBERS, a typed radius or region or an empty list."
   (case (length numbers)
     (0 '())
     (1 (unless (whole-p (first numbers))
@@ -65,7 +65,7 @@ BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE ac
 
 (defun map-text (session options &optional (lines-below 1))
   "Return the map as text, for OPTIONS of TEXT-MAP. The map fits the terminal of SESSION and leaves
-room for LINES-BELOW lines below."
+LINES-BELOW lines free."
   (let ((robot (session-robot))
         (console (session-console session)))
     (multiple-value-bind (columns lines) (terminal-size session)
@@ -202,8 +202,8 @@ typed. Return true if a key was pressed."
 
 (define-line "WATCH" (session (what :map-words "how many ticks, then what MAP takes" :optional))
     (:seeing)
-    "Show the map after each tick, in place on a terminal: WATCH 20 for 20 ticks, WATCH until
-nothing happens any more. A key or Control-C ends WATCH. Words after the number are as for MAP.
+    "Show the map after each tick, in place on a terminal. WATCH 20 shows 20 ticks; WATCH ends when
+nothing happens any more, at a key or at Control-C. After the number, give the words that MAP takes.
 Where time stands still, WATCH 20 lets 20 ticks pass. Lines pasted meanwhile are read afterwards; if
 no number was given, they end WATCH."
   (check-run-not-over)

@@ -45,7 +45,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
     "Go back to the end of TICK and continue from there, as with REWIND."
   (check-rewindable session)
   (let ((now (simulation-tick *simulation*)))
-    (unless (<= tick now) (reject-line "This run is only at tick ~D; give no later tick." now))
+    (unless (<= tick now) (reject-line "This run is at tick ~D. Give an earlier tick." now))
     (rewind-and-report session (- now tick))))
 
 ;;;; TRIAL
@@ -102,7 +102,7 @@ command, such as that of GO-TO, receive :INTERRUPT."
   (write-fitted-line session "~@(~A~).~%~A" (open-trial-name trial)
                      (time-description session *simulation*))
   (when (open-trial-changed trial)
-    (write-fitted-line session "Since tick ~D the run is no longer the experiment's own."
+    (write-fitted-line session "The run was changed at tick ~D and no longer shows the experiment."
                        (open-trial-changed trial))))
 
 ;;; Its end.
@@ -137,7 +137,7 @@ the stored row to compare with RESULT, or NIL; PARTS are the parts of the row's 
                         (write-trial-result session trial result)
                         (when row
                           (write-fitted-line session
-                                    "~:[The result is as in its row.~;~
+                                    "~:[The result equals its row.~;~
                                      ~:*The result differs from its row: ~{~A~^; ~}.~]"
                                     (row-differences (open-trial-experiment trial) result parts row
                                                      (open-trial-directory trial))))))
@@ -232,8 +232,8 @@ at the next tick. A second Control-C before that tick leaves the trial."
 RESUME and RATE let time pass; STATUS, PLAN-TREE, WHY and others show the state; SAVE-JOURNAL saves
 the run. Without a terminal, RESUME runs the trial to its end. With DIRECTORY, the outcome of the
 trial is compared with its row in the table there. TRIAL OFF leaves the trial, as do WORLD and
-another TRIAL. Without NUMBER, list the conditions; without NAME, list the experiments, or tell
-which trial the prompt is in."
+another TRIAL. Without NUMBER, list the conditions; without NAME, list the experiments, or tell the
+current trial."
   (cond ((and (null name) (session-trial session))
          (write-open-trial session (session-trial session)))
         ((null name) (write-experiments))

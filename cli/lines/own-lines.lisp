@@ -37,7 +37,7 @@ command, or if aliases would form a cycle."
            (format t "~:{~A = ~A~%~}" (sort (copy-list *aliases*) #'string< :key #'first)))
           (cmd (define-alias name cmd))
           (t (let ((known (assoc name *aliases* :test #'string=)))
-               (unless known (reject-line "There is no alias ~A." name))
+               (unless known (reject-line "There is no alias ~A. ALIAS lists all." name))
                (format t "~{~A = ~A~}~%" known))))))
 
 (define-line "EVAL" (session (exp :form "a Lisp form"))
@@ -60,8 +60,8 @@ your own commands. Without SETTING, tell whether ECHO is on."
           (session-quiet-p session)))
 
 (defun check-not-waiting-for-resume (session cmd jobs inbox)
-  "Signal BAD-LINE if a command that SESSION has issued by the line CMD waits for RESUME. Such a
-command is a job of JOBS, or a waiting request that is not in the list INBOX."
+  "Signal BAD-LINE if a command from the line CMD of SESSION waits for RESUME. Commands from CMD are
+JOBS and the waiting requests that are not in the list INBOX."
   (when (and (waits-for-resume-p session)
              (or (notevery #'job-over-p jobs)
                  (some #'issued-outside-plans-p (set-difference (waiting-requests) inbox))))

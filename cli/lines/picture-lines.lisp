@@ -5,8 +5,8 @@
 ;;; A picture shows the default layers, and those whose names are typed.
 
 (defun picture-layer-for-word (text line)
-  "Return the layer for TEXT, typed after LINE: the beginning of the name that MAP or PICTURE has
-for a layer, or of BARE, which omits the default layers."
+  "Return the layer for TEXT, typed after LINE. TEXT begins the name of a layer of MAP or PICTURE,
+or BARE, which omits the default layers."
   (picture-layer-name (complete-word text
                            (mapcar #'symbol-name
                                    (append (picture-layers) '(:bare) (text-layers)))
@@ -39,8 +39,8 @@ for a layer, or of BARE, which omits the default layers."
     (:seeing
      "PICTURE world.svg is usually enough. PICTURE world.png 30 GRID TRAIL has 30 pixels per cell
 and two more layers; PICTURE world.svg BARE NAMES has only the layer NAMES."
-     "Pixels per cell: from 1 to 256. By default graphics-scale* if that was set, else a number
-from 4 to 40 for which the map has at most 900 x 700 pixels."
+     "Pixels per cell: from 1 to 256. By default graphics-scale*, if set; otherwise from 4 to 40, so
+that the map has at most 900 x 700 pixels."
      (format nil "Layers shown by default, except with BARE: ~A." (layers-text *picture-layers*))
      (format nil "Layers shown if you name them: ~A."
              (layers-text (remove-if (lambda (layer) (member layer *picture-layers*))
@@ -57,8 +57,8 @@ from 4 to 40 for which the map has at most 900 x 700 pixels."
     (:seeing)
     "Save a film of the run so far in FILE, replacing it: an HTML page for any browser, to play,
 stop and step through, or an animated SVG. The film marks what robots grasped, released and stowed,
-failed commands and plans, and errors in your code. The words after FILE are as for PICTURE. ANYWAY
-saves the film even if definitions have changed since the run began."
+failed commands and plans, and errors in your code. After FILE, give the words that PICTURE takes.
+ANYWAY saves the film even if definitions have changed since the run began."
   (check-run-not-over)
   (let* ((words (split-words (or what "")))
          (others (remove "ANYWAY" words :test #'string-equal))
@@ -91,15 +91,14 @@ output. After an error, signal BAD-LINE with TROUBLE, a format control for the e
   "Load the system ars-magna/clim. If QUICKLISP-P, load McCLIM through Quicklisp first."
   (when quicklisp-p
     (call-or-reject #'ars-magna.clx:load-by-quicklisp
-                     "No window: Quicklisp could not get McCLIM (~A). Is the network there? Then ~
-                      type WINDOW again."))
+                     "No window: Quicklisp could not get McCLIM (~A). Check the network, ~
+                      then type WINDOW again."))
   (call-or-reject (lambda () (asdf:load-system "ars-magna/clim"))
                "No window: McCLIM was found, but cannot be loaded: ~A"))
 
 ;; Read when this file is loaded, so that a saved program has it with it.
 (defparameter *mcclim-installation-text*
-  (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt"))
-  "A text that tells how to install McCLIM.")
+  (file-text (asdf:system-relative-pathname "ars-magna" "cli/prompt/usage-window.txt")))
 
 (defun ensure-window-system ()
   "Load the code for windows, if needed. Signals BAD-LINE if X server, McCLIM or CLX does not work."
@@ -160,7 +159,7 @@ close the window at any time. The window closes by itself when the run is over."
     (and point (list (pt-x point) (pt-y point)))))
 
 (defun describe-imported-map (map report)
-  "Print a description of MAP from REPORT, as IMPORT-MAP returns it, and tell how to use the map."
+  "Print a description of MAP and how to use MAP. REPORT is the list that IMPORT-MAP returned."
   (destructuring-bind (&key width height cell free occupied unknown walls) report
     (format t "~(~A~): ~D by ~D cells of ~A m~:[~; (a cell is 1 m for the robot)~], ~D free, ~
                ~D occupied, ~D unknown; ~D walls.~%"

@@ -123,7 +123,7 @@ ended has failed, tell where and why it failed."
         (write-string (call-in-plan-package (task-name (first plans))
                                             (lambda ()
                                               (with-output-to-string (out) (print-plans out)))))
-        (format t "No plan is under way. PLAN lists the plans that there are.~%")))
+        (format t "No plan is under way. PLAN lists all plans.~%")))
   (when (session-failure session)
     (destructuring-bind (failure name) (session-failure session)
       (let ((*message-queue* (make-message-queue)))
@@ -220,14 +220,14 @@ interrupted. STOP-PLAN ends whole plans."
 OUT or CONTINUE. OFF ends stepping. Without a terminal or window, each stop is only a message."
   (let ((task (resolve-task n)) (on-p (null off)))
     (unless (or on-p (string-equal off "off"))
-      (reject-line "After the number of a task comes OFF or nothing, not ~A." off))
+      (reject-line "After a task number, give OFF or nothing, not ~A." off))
     (step-task task on-p)
     (format t "Task ~A ~:[continues without stopping~;stops when it continues~].~%"
             (task-number-and-label task) on-p)))
 
 (define-line "TRACE-PLANS" (session (switch :switch "ON or OFF" :optional)) (:planning)
-    "From now on, trace plans, including running ones, for WHY, PLAN-TIMELINE and the window's
-timeline. OFF stops tracing and discards the trace. Without ON or OFF, tell if plans are traced."
+    "Trace plans from now on, running plans too. WHY N, PLAN-TIMELINE and the window's timeline need
+the trace. OFF stops tracing and discards the trace. Without ON or OFF, tell if plans are traced."
   (when switch
     (let ((on-p (parse-switch "TRACE-PLANS" switch)))
       ;; A plan may hold the lock of all plans: then none is asked, and nothing changes.

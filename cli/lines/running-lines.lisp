@@ -49,7 +49,7 @@
       (resume-run session)))
 
 (defun step-run (session count)
-  "Pass COUNT ticks of SESSION's run and print the tick; if fewer passed, also how time passes."
+  "Pass COUNT ticks of SESSION's run. Print the tick; if fewer ticks passed, also how time passes."
   (check-run-not-over)
   (let* ((simulation (current-simulation))
          (goal (+ (simulation-tick simulation) count)))

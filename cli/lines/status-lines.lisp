@@ -73,7 +73,7 @@
         (write-trimmed-line "  ~{~:(~A~)~^ ~}" data))))
 
 (defun command-entry-text (entry control)
-  "Return the text for ENTRY, from :UNDER-WAY or :INTERRUPTED: its part, then CONTROL formatted."
+  "Return ENTRY of :UNDER-WAY or :INTERRUPTED as text: its part, then the output of CONTROL."
   (destructuring-bind (&key part command for by by-for tick) entry
     (format nil "~@[~A: ~]~?" part control (list command for by by-for tick))))
 
@@ -87,7 +87,7 @@
                                 entry "~(~A~), for ~A, by ~(~A~), for ~A, at tick ~D"))))
 
 (defun thinking-cost-text (status)
-  "Return as text what thinking costs, according to STATUS, or NIL for the default."
+  "Return the cost of thinking in STATUS as text; NIL if it is the default."
   (let ((mode (getf status :thinking)))
     (cond ((consp mode) (format nil "charged, and a tick for ~D steps" (third mode)))
           ((eq :charged mode) "charged")
@@ -149,7 +149,7 @@ line tells if no ticks pass now. In Lisp: (status)."
 
 (define-line "POS" (session (x metres "metres from the left") (y metres "metres from the top"))
     (:seeing)
-    "Put the robot at X, Y at once, exactly, ignoring obstacles. A message tells of a wall there."
+    "Put the robot at X, Y at once, exactly, ignoring obstacles. A message says if a wall is there."
   (let ((robot (session-robot)))
     (place-robot robot x y (robot-angle robot))))
 

@@ -16,7 +16,7 @@
     (end-simulation old "the prompt has gone elsewhere")))
 
 (defun end-replaced-run (session old robot)
-  "End the run OLD, left by SESSION for ROBOT's run. Move OLD's other prompts to ROBOT's run, too."
+  "End the run OLD, which SESSION has left for ROBOT's run. Move OLD's other prompts there, too."
   (setf (gethash old *replaced-runs*) (list (robot-simulation robot) (robot-name robot)))
   (end-abandoned-run old)
   (dolist (other (remove-if #'session-place (remove session (sessions-showing old))))
@@ -24,7 +24,7 @@
       (when simulation (announce-run other simulation name)))))
 
 (defun start-live-run (session robot-name)
-  "End the run of SESSION, and start a run of the world of ROBOT-NAME at tick 0 and the same rate."
+  "End the run of SESSION, and start one in ROBOT-NAME's world, at tick 0 with the same rate."
   (let ((old *simulation*))
     (when (plans) (format t "The plans under way end.~%"))
     ;; A run at tick 0 would continue instead of starting again.
@@ -39,7 +39,7 @@
   "Return the element of NAMES, robots of one world, that equals NAME; the first if NAME is NIL."
   (if name
       (or (find name names :test #'same-name-p)
-          (reject-line "That world has no robot ~A, but ~{~A~^, ~}." (string-upcase name) names))
+          (reject-line "That world has no robot ~A, only ~{~A~^, ~}." (string-upcase name) names))
       (first names)))
 
 (define-line "WORLD" (session (name :world "a shipped world, or a Lisp file" :optional)

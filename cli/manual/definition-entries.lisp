@@ -42,8 +42,8 @@
 ;;; Definitions by name. The files of the simulator's own definitions are not recorded with them.
 
 (defun make-entries (kind function)
-  "Return the entries that FUNCTION makes from name, object and file of each definition of KIND in
-the project. The file is NIL if it is not known."
+  "Call FUNCTION with name, object and file of each definition of KIND in the project. Return the
+entries that FUNCTION makes. The file is NIL if it is not known."
   (loop for (name object source) in (all-definitions kind)
         for name-of-file = (and source
                                 (not (eq :own source))
@@ -196,7 +196,7 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
      "A value of the attribute :COLOR.")
     (("VOID" "LST" "~" "THING-DESCRIPTOR" "ROBOT-CONTINUATION")
      "A name of a type in Nisp. DEFFUNC, DEFPROC and LET accept and ignore it (manual 3.1)."))
-  "Lists (names text): the descriptions of names that are only symbols.")
+  "Lists (names text): descriptions of names that have no definition.")
 
 (defun plain-symbol-text (symbol)
   (second (find-if (lambda (names) (member (symbol-name symbol) names :test #'string=))
@@ -228,7 +228,7 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
     (t "")))
 
 (defun value-facts (symbol)
-  "Return a list of one fact, the value of the variable SYMBOL; NIL if the value is long."
+  "Return a list of one fact, the value of the variable SYMBOL if a number, keyword or boolean."
   (when (and (boundp symbol) (not (constantp symbol)))
     (let ((value (symbol-value symbol)) (*print-case* :downcase))
       (when (typep value '(or real keyword boolean))

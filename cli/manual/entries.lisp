@@ -19,13 +19,11 @@
   '((:commands "Commands" "Commands for robots, cameras, hands and storage bins.")
     (:prompt "The prompt's lines" "Lines to type after Robot>, besides Lisp.")
     (:parameters "Parameters" "Special variables that set the physics and noise of the world.")
-    (:error-codes "Error codes" "Error codes that continuations receive, and the commands that pass
-them.")
+    (:error-codes "Error codes" "Error codes for continuations, and the commands that pass them.")
     (:definers "Definers" "Macros and functions that define things of your own.")
     (:constructs "Plan constructs" "What plans can say beyond Lisp.")
     (:plan-functions "Plan functions" "Functions with which plans command and query their robot.")
-    (:fluents "Fluents" "Variables with the fluents that tell plans how commands of the robot
-ended.")
+    (:fluents "Fluents" "Variables with the fluents that tell plans how commands ended.")
     (:attributes "Attributes" "Properties of things, and how well they are sensed.")
     (:substances "Substances" "Materials of walls and things.")
     (:place-types "Place types" "Kinds of places that a robot can sense where it stands.")
@@ -38,10 +36,9 @@ ended.")
     (:experiments "Shipped experiments" "Experiments that you can run as they are.")
     (:names "Functions, variables, types" "All other names of ARS and NISP, by layer.")
     (:worlds-names "Other names of the worlds" "What else ARS-WORLDS has: things, and functions."))
-  "Lists (key title introduction), in order. A name is linked to its first chapter.")
+  "Lists (key title introduction), in order. A name is linked to the first chapter that has it.")
 
 (defun chapter-title (chapter)
-  "Return the title of CHAPTER, a key of *CHAPTERS*."
   (second (assoc chapter *chapters*)))
 
 (defun chapter-introduction (chapter) (third (assoc chapter *chapters*)))

@@ -50,7 +50,7 @@ be variables of the block. ID is the id of the heading above the block."
 ;;; Names in blocks.
 
 (defun name-at (text start)
-  "Return the name in TEXT at START, in lower case and without package prefix, and the name's end."
+  "Return two values: the name in TEXT at START, in lower case without package prefix, and its end."
   (let* ((end (or (position-if #'name-end-p text :start start) (length text)))
          (colon (position #\: text :start start :end end :from-end t))
          (package-p (and colon (< start colon))))
@@ -168,13 +168,12 @@ names. EXAMPLES are the examples found, the last first."
     (reverse (search-examples state))))
 
 (defun read-examples (pages)
-  "Return all examples on PAGES."
   (mapcan #'examples-of-page (copy-list pages)))
 
 ;;; Choosing.
 
 (defparameter *longest-example* 30
-  "The largest number of lines of a block that is shown for a name that only occurs in the block.")
+  "A block with more lines is not shown in full for a name that it uses but does not explain.")
 
 (defun names-of-kind (example kind)
   "Return the names in EXAMPLE of KIND: :TYPED at the prompt, :CALLED in Lisp, or :WRITTEN in Lisp."
@@ -185,7 +184,7 @@ names. EXAMPLES are the examples found, the last first."
 
 (defun examples-for (name kind examples)
   "Return two values: the EXAMPLES that are about the string NAME, and true. If there are none,
-return a list of the shortest example that has NAME among its NAMES-OF-KIND for KIND, and NIL."
+return a list of the shortest example with NAME among its names of KIND, and NIL."
   (flet ((having (reader)
            (remove-if-not (lambda (example)
                             (member name (funcall reader example) :test #'string=))

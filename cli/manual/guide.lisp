@@ -79,7 +79,7 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
   (rest (assoc source *known-pages* :test #'string=)))
 
 (defun page-part (page)
-  "Return the part of the contents with PAGE: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or :ABOUT."
+  "Return the part of the contents for PAGE: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or :ABOUT."
   (let ((source (page-source page)))
     (cond ((third (known-page source)))
           ((starts-with-subseq "tests/" source) :inside)
@@ -156,5 +156,4 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
                :tokens (if (string= source "src/readings.md") (add-reading-ids tokens) tokens))))
 
 (defun read-guide ()
-  "Return all pages of the guide."
   (mapcar #'read-page (page-sources)))

@@ -17,7 +17,7 @@
            *entities*))
 
 (defun unescape-html (html)
-  "Return HTML, which has no tags, as text: with characters in place of entities."
+  "Return HTML, which has no tags, as text: entities become characters."
   (with-output-to-string (out)
     (loop with i = 0
           while (< i (length html))

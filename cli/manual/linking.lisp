@@ -12,7 +12,7 @@ names in lower case to entries. FILES are the project's files to copy beside the
   (files '() :type list))
 
 (defun table-of-entries (entries)
-  "Return a hash table from names to ENTRIES; to the first of several entries with the same name."
+  "Return a hash table from names to ENTRIES. A name of several entries leads to the first."
   (let ((table (make-hash-table :test #'equal)))
     (dolist (entry entries table)
       (unless (gethash (entry-key entry) table)
@@ -99,7 +99,7 @@ return the address of its page, or of the first page."
 ;;; Pages of the guide.
 
 (defun link-tokens (tokens page book)
-  "Return TOKENS, of PAGE, with links into the manual and with names linked to entries."
+  "Return TOKENS of PAGE, with links that lead into the manual and names linked to entries."
   (flet ((linked-p (token) (member (tag-name token) '("pre" "code" "a") :test #'equal)))
     (loop for part in (split-into-elements tokens #'linked-p)
           for token = (first part)
@@ -121,7 +121,7 @@ return the address of its page, or of the first page."
         (rest element)))
 
 (defun rewrite-picture-address (token page book)
-  "Return TOKEN of PAGE; if TOKEN is a picture, with the address of the manual's copy."
+  "Return TOKEN of PAGE. In a picture, the address is replaced by that of the manual's copy."
   (if (tag-named-p "img" token)
       (tag-with-attribute "src" (manual-address (attribute-value "src" token) page book) token)
       token))
@@ -192,7 +192,7 @@ return the address of its page, or of the first page."
   (starts-with-subseq "  " line))
 
 (defun paragraphs (text)
-  "Divide the lines of TEXT into lists, each the lines of a paragraph or of an indented list."
+  "Return a list of the paragraphs and indented lists in TEXT, each as a list of lines."
   (let ((groups '()))
     (dolist (line (uiop:split-string text :separator '(#\Newline))
                   (reverse (mapcar #'reverse groups)))

@@ -1,8 +1,8 @@
 ;;;; package.lisp -- the manual as a set of HTML pages: ./cli/ars-magna --manual.
 
 (ars-magna.host:define-package :ars-magna.manual
-  (:documentation "Writes the manual: a guide made from the README.md files, and a reference made
-from the definitions in this Lisp.")
+  (:documentation "Writes the manual: a guide from the README.md files, and a reference from
+definitions.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:shadow #:entry-name)                        ; an entry here is of the reference
   (:import-from :ars-magna.world

@@ -98,7 +98,7 @@
     ("step-plan" "single step" "stepper" "step through")
     ("Checks in FiveAM" "unit test" "testing" "regression test" "assertion")
     ("In an editor" "emacs" "slime" "sly" "ide" "vim" "vscode" "editor"))
-  "Lists (name synonym...). A search for a synonym shows the entry or heading with the name first.
+  "Lists (name synonym...). A search for a synonym first shows the entry or heading called NAME.
 Synonyms leave out a, an, the and my, because the search ignores these words.")
 
 (defstruct (row (:constructor make-row (name kind address sentence &optional (words "")))
@@ -146,7 +146,7 @@ Synonyms leave out a, an, the and my, because the search ignores these words.")
                         (row-words row)))))
 
 (defun write-index (out book)
-  "Write the search index to OUT as JavaScript. Synonyms come first: they beat equally good rows."
+  "Write the search index to OUT as JavaScript: synonyms first, before equally good rows."
   (let ((rows (append (mapcar #'entry-row (book-entries book))
                       (mapcan #'page-rows (copy-list (book-pages book))))))
     (format out "var SEARCH_INDEX = [~%~{~A~^,~%~}~%];~%"

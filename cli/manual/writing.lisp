@@ -137,7 +137,7 @@
                                       (example-link-html example)))))))
 
 (defparameter *note-on-examples*
-  "A link leads from each example to its page, where the definitions that it uses are further up."
+  "Each example has a link to its page. The definitions that it uses are above it on that page."
   "A note on examples, shown in each chapter of the reference.")
 
 ;;; Entries and chapters.
@@ -227,8 +227,7 @@
       (page (chapter-file chapter) #'write-chapter chapter))))
 
 (defun write-manual (directory)
-  "Write the manual into DIRECTORY, a name, and return the path of the first page. Make the
-directory if it does not exist."
+  "Write the manual into DIRECTORY, a name; make it if needed. Return the path of the first page."
   (let ((directory (uiop:ensure-directory-pathname
                     (merge-pathnames (path-of-name directory) (base-directory))))
         (book (let ((pages (read-guide)) (entries (all-entries)))

@@ -25,7 +25,7 @@
               (string= "" (result-error result)) (result-error result))))
 
 (defun failed-trial-lines (bad check)
-  "Return lines about up to *MOST-FAILURES-LISTED* of BAD, the unsuccessful results of CHECK."
+  "Return lines about the first *MOST-FAILURES-LISTED* of BAD, the unsuccessful results of CHECK."
   (append (loop for result in bad
                 repeat *most-failures-listed*
                 collect (format nil "  trial ~D, seed ~D: ~A" (result-trial result)
@@ -135,7 +135,7 @@ So a form whose rate of success is really AT-LEAST or more fails the check with 
 most LEVEL. PASS-PROBABILITY returns the probability that a check passes for a given rate; with more
 trials, a low rate is noticed more often. If AT-LEAST is 1, all trials must succeed.
 
-Seeds are fixed, so the same code gives the same result, with any number of threads WORKERS. With
+Seeds are fixed, so the same code gives the same result, with any number WORKERS of threads. With
 several threads FORM does not see the dynamic bindings of the test. The message about a failure
 gives the numbers, the first unsuccessful trials with reasons, and a form that repeats one of these
 trials, by REPEAT-TRIAL or REPLAY-TRIAL, in any Lisp with the same code."

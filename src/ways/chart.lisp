@@ -77,12 +77,12 @@ OPERATOR unless POINT is inside the map."
 ;;; Barred cells.
 
 (defun cost-of-node (chart node)
-  "Return what a metre costs in the cell NODE of CHART now."
+  "Return the current cost of a metre in the cell NODE of CHART."
   (min +barred+ (+ (aref (terrain-cells (chart-terrain chart)) node)
                    (or (cdr (assoc node (chart-barred chart))) 0d0))))
 
 (defun set-extra-cost (chart node cost)
-  "Set the extra cost of the cell NODE of CHART to COST, or to none if COST is NIL."
+  "Set the extra cost of the cell NODE of CHART to COST; remove it if COST is NIL."
   (let ((entry (assoc node (chart-barred chart))))
     (unless (eql cost (cdr entry))
       (setf (chart-barred chart)

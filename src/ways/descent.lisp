@@ -43,7 +43,7 @@ true for a line that needs only free cells, and no distance from walls."
 
 (defun measure-line (line cells columns leaving)
   "Compute and store LINE's cost: +BARRED+ if LINE is not free or costs more than its limit. CELLS
-are those of a terrain or field, COLUMNS a row. LEAVING is true if LINE may begin near a wall."
+belong to a terrain or field of COLUMNS columns. LEAVING is true if LINE may begin near a wall."
   (declare #.*hot* (type line line) (type amounts cells) (type (integer 0 40000) columns))
   (let* ((u (* 2 (line-x line))) (v (* 2 (line-y line)))
          (du (- (* 2 (line-end-x line)) u)) (dv (- (* 2 (line-end-y line)) v))
@@ -108,9 +108,9 @@ are those of a terrain or field, COLUMNS a row. LEAVING is true if LINE may begi
 
 (declaim (inline best-point-on-side))
 (defun best-point-on-side (ahead aside drop cost)
-  "Return the best point of a side of a square, as a position from 0 to 1, for a start that is AHEAD
-metres in front of the side and ASIDE metres along it. A metre on the way to the side costs COST.
-The cost to the goal is lower by DROP at the end of the side than at its beginning."
+  "Return where the cheapest way crosses a side of a square, as a position from 0 to 1. The way
+starts AHEAD metres in front of the side and ASIDE metres along it. A metre on the way to the side
+costs COST. The cost to the goal is lower by DROP at the end of the side than at its beginning."
   (declare (type double-float ahead aside drop cost))
   (cond ((<= drop 0d0) (clamp aside 0d0 1d0))
         ((>= drop cost) 1d0)
@@ -180,10 +180,10 @@ The cost to the goal is lower by DROP at the end of the side than at its beginni
 ;;;; Drawing a way
 
 (defconstant +straight-cost-ratio+ 1.02d0
-  "The highest cost ratio of a straight line to the steps that it replaces. This saves turns.")
+  "The most that a straight line, which saves turns, may cost relative to the steps it replaces.")
 
 (defstruct (polyline (:constructor make-polyline (x y)) (:copier nil))
-  "A way that is being drawn. POINTS are its vertices, the latest first. (X,Y) is the start or the
+  "A way under construction. POINTS are its vertices, the latest first. (X,Y) is the start or the
 latest vertex; from there the way leads to (END-X,END-Y), at the cost SINCE."
   (x 0d0 :type double-float)
   (y 0d0 :type double-float)
@@ -215,7 +215,7 @@ if the line is not free, or costs more than LIMIT. If LEAVING, the line may begi
 (declaim (inline straight-line-allowed-p extend-polyline))
 (defun straight-line-allowed-p (polyline field x y limit last)
   "True if the line from the last vertex of POLYLINE to (X,Y) is free and costs no more than LIMIT.
-If LAST, it is the last line of a way and may end as near to a wall as a first line may begin."
+If LAST, this line ends the way, and may end as near to a wall as a first line may begin."
   (declare (type polyline polyline) (type metres x y) (type double-float limit))
   (let ((from-x (polyline-x polyline)) (from-y (polyline-y polyline)))
     (or (< (free-line-cost field from-x from-y x y limit (on-first-line-p polyline)) +barred+)

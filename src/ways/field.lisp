@@ -43,7 +43,6 @@
     nil))
 
 (defun queue-pop (queue)
-  "Remove the node with the least key from QUEUE."
   (declare #.*hot*)
   (let* ((keys (queue-keys queue)) (nodes (queue-nodes queue))
          (count (1- (queue-count queue)))
@@ -268,7 +267,7 @@ and CELLS are the cells of the terrain, which must not change."
              (set-draft field node draft)))))
 
 (defun compute-total (field node)
-  "Compute the totals of FIELD up to NODE's total. Return that total, +BARRED+ if there is no way."
+  "Return NODE's total, after computing all lower totals of FIELD; +BARRED+ if there is no way."
   (declare #.*hot* (type field field) (type node node))
   (let ((queue (field-queue field)) (totals (field-totals field)) (drafts (field-drafts field)))
     (loop until (zerop (queue-count queue))

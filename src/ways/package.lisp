@@ -2,8 +2,8 @@
 
 (ars-magna.host:define-package :ars-magna.ways
   (:documentation "Finds ways through a map, at any angle, that keep away from walls and avoid
-barred cells. Changed cells are repaired at little cost. The algorithm is Field D* of Ferguson and
-Stentz (2006). The layer uses walls and places, but neither robots nor things.")
+barred cells. If cells change, only the affected costs are computed again. The algorithm is Field D*
+of Ferguson and Stentz (2006). The layer uses walls and places, but neither robots nor things.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :ars-magna.geometry #:pt #:pt-p #:make-pt #:pt-x #:pt-y)
   (:shadowing-import-from :ars-magna.world #:map)

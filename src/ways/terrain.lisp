@@ -56,7 +56,6 @@ never modified" :writable)
   "The number of terrains that are kept for one map, with different clearances and costs.")
 
 (defun discard-all-fields ()
-  "Discard the fields of all terrains. Fields can be computed again."
   (dolist (terrains (hash-table-values **terrains**))
     (dolist (terrain terrains) (setf (terrain-fields terrain) '()))))
 
@@ -90,7 +89,7 @@ never modified" :writable)
 ;;; Making one.
 
 (defun free-cell-costs (map columns)
-  "Return a vector of the costs of MAP's cells and a margin: 1 for free cells, +BARRED+ for walls."
+  "Return a vector of costs of MAP's cells and a margin: 1 if free, +BARRED+ in walls and margin."
   (let ((cells (make-cost-vector (* columns (+ 2 (map-height map))) +barred+)) (index 0))
     (dotimes (y (map-height map) cells)
       (dotimes (x (map-width map))
@@ -99,8 +98,8 @@ never modified" :writable)
         (incf index)))))
 
 (defun offsets-within (clearance columns)
-  "Return a list of (dx offset) for the cells with middles nearer to the cell of a wall than
-CLEARANCE. OFFSET is the number of such a cell minus the number of the wall's cell."
+  "Return a list of (dx offset) for the cells whose middles are less than CLEARANCE from a wall's
+cell. OFFSET is the number of such a cell minus the number of the wall's cell."
   (flet ((gap (d) (max 0 (- (abs d) 1/2))))
     (loop with radius = (ceiling clearance)
           for dy from (- radius) to radius

@@ -46,7 +46,7 @@ map. CHART may be a map or a map's name. Signals WRONG-ARGUMENT."
     (and x (make-pt x y))))
 
 (defun free-endpoint (operator chart point)
-  "Return coordinates of POINT or, if in a wall, of a free point near it. Signals WRONG-ARGUMENT."
+  "Return coordinates of POINT; if it is in a wall, of a free point nearby. Signals WRONG-ARGUMENT."
   (node-of-point operator chart point)
   (multiple-value-bind (x y) (nearest-free-coordinates chart (point-x point) (point-y point))
     (unless x
@@ -86,12 +86,12 @@ way. Both points are free. UNTIL and TURNS are arguments of TRACE-WAY."
 
 (addition find-way)
 (defun find-way (chart start goal &key until)
-  "Return the way on CHART from START to GOAL: a list of the points, PTs, where it begins, turns and
-ends; () if there is no way. START and GOAL are PTs or lists (x y). A point in a wall stands for the
-nearest free point, up to five cells away. CHART may be a map or the name of a map, which stands for
-(make-chart map): a metre in a DOORWAY costs 2. With UNTIL the way ends in the first suitable cell
-after the cell of START: a place of the type named UNTIL, or a cell for whose column and row the
-function UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Return the way on CHART from START to GOAL, a list of PTs: the points where the way begins, turns
+and ends. Return () if there is no way. START and GOAL are PTs or lists (x y). A point in a wall
+stands for the nearest free point, up to five cells away. CHART may be a map or the name of a map,
+which stands for (make-chart map): a metre in a DOORWAY costs 2. With UNTIL the way ends in the
+first suitable cell after the cell of START: a place of the type named UNTIL, or a cell for whose
+column and row the function UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument find-way until (or (functionp until) (symbolp until))
                   "the name of a place type, or a function of a column and a row")
   (let* ((chart (ensure-chart 'find-way chart))
