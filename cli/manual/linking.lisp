@@ -35,8 +35,7 @@ names in lower case to entries. FILES are the project's files to copy beside the
     (format nil "~{~A~^/~}" (reverse parts))))
 
 (defun copied-file-name (name)
-  "Return the name of the manual's copy of the project's file NAME. If browsers cannot show the
-file, the copy has the type txt."
+  "Return the name of the manual's copy of the file NAME: a txt file if browsers cannot show NAME."
   (format nil "files/~A~:[.txt~;~]" name
           (member (pathname-type name) '("svg" "png" "txt" "html") :test #'equal)))
 
