@@ -13,7 +13,7 @@
 (in-readtable :nisp)
 
 (defstruct (errand (:include claim) (:copier nil))
-  "The parts, description and continuation of an errand. PATIENCE further setbacks end the errand."
+  "The parts, description and continuation of an errand. The errand ends after PATIENCE setbacks."
   (camera nil :read-only t)
   (hand nil :read-only t)
   (bin nil :read-only t)

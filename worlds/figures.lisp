@@ -109,7 +109,7 @@ the map to draw; NIL is the whole map.")
 
 (defparameter *choosing-labels*
   '("always the short way" "always the long way" "either, at random" "chosen by rollouts")
-  "The labels of the conditions of CHOOSING-BY-ROLLOUTS on the page, in order.")
+  "The labels on the page for the conditions of CHOOSING-BY-ROLLOUTS, in order.")
 
 (defun in-time-p (outcome)
   (string= "success" outcome))

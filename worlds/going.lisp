@@ -40,7 +40,7 @@ the robot has received more commands, another program has taken it over."
 ;;; Journeys.
 
 (defstruct (journey (:include claim) (:copier nil))
-  "The goal and reckoning of a robot. STEPS further steps or PATIENCE obstacles end the journey."
+  "The goal and reckoning of a robot. The journey ends after STEPS steps or PATIENCE obstacles."
   (me nil :type reckoning :read-only t)
   (goal '() :type list :read-only t)
   (tolerance 1 :type real :read-only t)

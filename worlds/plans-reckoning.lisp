@@ -94,8 +94,8 @@ position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING.
 ;;; Obstacles. The chart has the cells that are barred now, the reckoning has the tick until when.
 
 (defun update-barred-cells (me)
-  "On the chart of the reckoning ME, bar the cells that ME has noted as barred, and no others, at a
-cost of at most 90 for each cell. Remove the shown way, because it may no longer be the best."
+  "Bar on the chart of ME exactly the cells that ME has noted as barred, each at a cost of at most
+90. Remove the shown way, because it may no longer be the best."
   (show-way me '())
   (let ((chart (reckoning-chart me)) (sums '()))
     (loop for (cell cost) in (reckoning-barred me)
@@ -136,7 +136,7 @@ cost of at most 90 for each cell. Remove the shown way, because it may no longer
     (and point (= (first point) (pt-x end)) (= (second point) (pt-y end)))))
 
 (defun show-way-to (me chart goal)
-  "Show in pictures the way of the robot of the reckoning ME on CHART to GOAL, if not yet shown."
+  "Show in pictures the way on CHART to GOAL for the robot of ME, unless it is shown already."
   (let ((end (nearest-free-point chart goal)))
     (when (and end (not (way-shown-to-p me end)))
       (let ((start (nearest-free-point chart (reckon me))))

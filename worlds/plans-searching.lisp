@@ -32,7 +32,7 @@ metres; NIL if there is no way."
     (and start (way-cost chart start place))))
 
 (defun nearest-place (me places left dice)
-  "Return the one of LEFT with the cheapest way for the robot of ME; the first if there is no way."
+  "Return the one of LEFT that the robot of ME reaches most cheaply; the first if there is no way."
   (declare (ignore places dice))
   (flet ((straight (place) (distance-left me place)))
     (let ((nearest (first left)) (least nil))

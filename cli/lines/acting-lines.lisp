@@ -3,7 +3,7 @@
 (in-package :ars-magna.cli)
 
 (defun warn-of-cancelled-drive (point simulation)
-  "Queue a warning that the robot no longer goes to POINT: a rewind has replaced SIMULATION."
+  "Queue a warning that the robot no longer goes to POINT, because a rewind replaced SIMULATION."
   (let ((*message-queue* (simulation-messages (latest-successor simulation))))
     (warning-set (format nil "go-to: The run was rewound on the way to ~A, so the robot no ~
                               longer goes there. Type the line again to send it there."

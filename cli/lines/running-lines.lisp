@@ -82,7 +82,7 @@
 
 (define-line "RATE" (session (x :rate "a number of ticks per second, or free" :optional))
     (:running)
-    "Set the rate of a live simulator, or show it and how many ticks have passed. No ticks pass
+    "Set the rate of a live simulator. Without a rate, show the rate and the tick. No ticks pass
 while the simulator is idle: nothing moves by itself in its world, and no command was given."
   (let ((simulation (current-simulation)))
     (when x

@@ -155,7 +155,7 @@ names. EXAMPLES are the examples found, the last first."
         when name collect name))
 
 (defun examples-of-page (page)
-  "Return the examples on PAGE, in order. Names without a block between them share the next blocks."
+  "Return the examples on PAGE, in order. Names with no block between them share the next blocks."
   (let ((state (make-example-search :page page :heading (list 1 "" (page-title page)))))
     (flet ((wanted-p (token)
              (or (heading-level token) (member (tag-name token) '("p" "pre") :test #'equal))))

@@ -24,7 +24,7 @@ is none within +FREE-POINT-DISTANCE+ columns and rows."
         finally (return (and least (values best-x best-y)))))
 
 (defun nearest-free-coordinates (chart x y)
-  "Return X and Y if their cell can be crossed, else the middle of the nearest such cell, or NIL."
+  "Return X and Y if their cell can be crossed; otherwise return the NEAREST-FREE-MIDDLE."
   (if (crossable-cell-p chart (floor x) (floor y))
       (values x y)
       (nearest-free-middle chart x y)))
