@@ -17,7 +17,7 @@
   (let ((shown (joined (type-batch "(begin-plan 'loiter 9)" "step 2" "step-task 2"
                                    "step-task 2 off" "step-task 2 maybe" "stop-plan"))))
     (is-true (has-words-p shown "stops when it continues." "continues without stopping."
-                          "comes OFF or nothing, not maybe"))))
+                          "give OFF or nothing, not maybe"))))
 
 (test trace-plans.begins-at-once
   (let ((ars-magna.rpl-robot:*trace-plans* nil))
