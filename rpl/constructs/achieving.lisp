@@ -39,7 +39,7 @@
 ;;; Running. A frame of one of these remembers a goal-run.
 
 (defstruct (goal-run (:constructor make-goal-run (operator goal)) (:copier nil))
-  "A run of OPERATOR for GOAL, an instance such as (on a b). VALUE is the result of the run."
+  "One execution of OPERATOR for GOAL, such as (on a b). VALUE is the result."
   (operator nil :type symbol :read-only t)
   (goal nil :read-only t)
   (value nil))
@@ -81,7 +81,7 @@ with the value OTHERWISE. Return what a step returns."
 If the matching DEF-GOAL of BELIEF says that GOAL is believed already, return that value and do
 nothing. If not, run the matching DEF-GOAL of ACHIEVE and return its value. Fails with UNKNOWN-GOAL
 if no ACHIEVE matches, and with GOAL-NOT-ACHIEVED if GOAL is not believed afterwards. If no BELIEF
-matches, the end of the plan counts as success. (From CRAM and XFRM.)"
+matches, ACHIEVE succeeds when the plan succeeds. (From CRAM and XFRM.)"
   (:arguments goal)
   (:parts (goal function (value-lambda goal scope)))
   (:steps

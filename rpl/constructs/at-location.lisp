@@ -7,7 +7,7 @@
 ;;; tasks whose place fits do not drive, and a waiting task is not overtaken by later ones.
 
 (defstruct (stay-registry (:constructor make-stay-registry ()) (:copier nil))
-  "The tasks of a plan runner that are busy at a place, as a list of STAYs in the fluent STAYS."
+  "The value of the fluent STAYS is a list of STAY-RECORDs of tasks that are busy at a place."
   (valve (make-valve 'stay-registry) :type valve :read-only t)
   (stays (create-fluent 'stays '()) :type fluent :read-only t))
 
@@ -20,7 +20,7 @@
       (setf (runner-note *runner* 'stay-registry) (make-stay-registry))))
 
 (defun begin-stay (whereabouts)
-  "Note that the calling task stays where the robot is now. Return the stay."
+  "Record that the calling task is busy where the robot is now. Return the record."
   (let ((stay (make-stay-record (current-task))))
     (set-value (stay-registry-stays whereabouts)
                (cons stay (fluent-value (stay-registry-stays whereabouts))))
@@ -32,7 +32,7 @@
                (remove stay (fluent-value (stay-registry-stays whereabouts))))))
 
 (defun no-other-stays-fluent (whereabouts)
-  "Return a fluent that is true while no task stays, except the current one and those around it."
+  "Return a fluent that is true while WHEREABOUTS lists only the current task and tasks around it."
   (let ((task (current-task)))
     (fl-funcall (lambda (stays)
                   (every (lambda (stay) (part-of-p task (stay-record-task stay))) stays))
@@ -42,8 +42,7 @@
 (define-condition location-lost (plan-failure)
   ((place :initarg :place :initform nil :reader lost-place)
    (attempts :initarg :attempts :initform 0 :reader lost-attempts))
-  (:documentation "The robot did not stay at the place of an AT-LOCATION, even after :ATTEMPTS
-attempts to return."))
+  (:documentation "The robot did not stay at the place of an AT-LOCATION in :ATTEMPTS attempts."))
 
 (addition lost-place lost-attempts)
 (setf (documentation 'lost-place 'function)

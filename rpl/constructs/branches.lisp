@@ -75,8 +75,8 @@ evaporates the others. If all branches fail, TRY-ALL fails with a COMPOSITE-FAIL
 ;;;; One after the other
 
 (defstruct (attempt-record (:constructor make-attempt-record (order)) (:copier nil))
-  "The attempts left to try, and the FAILURES so far, the newest first. ORDER is a list of the
-attempts left, each a cons (node . environment)."
+  "ORDER is a list of the attempts left, each a cons (node . environment). FAILURES is a list of the
+failures so far, the newest first."
   (order '() :type list)
   (failures '() :type list))
 
@@ -146,7 +146,7 @@ Return the value of BODY. If BODY succeeds for no element, fail with a COMPOSITE
           'simple-vector))
 
 (defun iteration-code (variable body scope)
-  "Return code for BODY in the environment of a turn. Each turn has its own VARIABLE and tags."
+  "Return code for BODY in the environment of one iteration, with its own VARIABLE and tags."
   (let ((tags (tags-in body)))
     (binding-body-code body (tagged-scope (variable-scope (single-value-scope scope)
                                                           (cons variable tags))
@@ -212,7 +212,7 @@ FAILURES are lists with the newest first."
   "Run BRANCHES in parallel, in a plan. PAR-AT-LEAST succeeds as soon as COUNT branches have
 succeeded, and evaporates the others. The value of PAR-AT-LEAST is the list of the branches' values
 in the order in which they came. PAR-AT-LEAST fails with a COMPOSITE-FAILURE as soon as too many
-branches have failed. COUNT is an integer from 0 to the number of branches. (Not from CRAM, whose
+branches have failed. COUNT is an integer from 0 to the number of branches. (Not from CRAM. CRAM's
 statecharts of 2026 have a PAR with minimum_success.)"
   (:arguments count)
   (:parts (needed function (value-lambda count scope))

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.constructs)
 
 (define-expression failing
-  "Fail as FAIL would with the list that the function ARGUMENTS returns for the environment."
+  "Fails as FAIL does. The function ARGUMENTS returns FAIL's arguments for the environment."
   (:parts (arguments function))
   (:step
    (let ((failure (make-failure (funcall arguments environment))))
@@ -64,7 +64,7 @@
 (defparameter *constructs-without-failures*
   '("SEQ" "PAR" "PURSUE" "N-TIMES" "WAIT-FOR" "WAIT-TIME" "WAIT-UNTIL" "SET-VALUE" "PULSE"
     "FLUENT-VALUE" "VREF" "WHENEVER" "WITH-POLICY" "WITH-VALVE")
-  "Names of operators that fail with the error code of a command only if a form in them does.")
+  "Names of operators that fail with a command's error code only if a form inside them does.")
 
 (defun may-fail-with-class-p (form code)
   "True if FORM, in a plan, may fail with class CODE, as far as the functions in FORM are known."
@@ -172,7 +172,7 @@ RESET-COUNTER. (From CRAM, except that a counter is also a variable.)"
                    ,@body)))))
 
 (define-construct do-retry (counter &body body)
-  "If positive, decrement COUNTER and run BODY, usually (retry). For failure handlers. (From CRAM.)"
+  "If COUNTER is positive, decrement it and run BODY, usually (retry). For handlers. (From CRAM.)"
   (:in-lisp `(when (plusp ,counter)
                (decf ,counter)
                ,@body)))
@@ -209,8 +209,8 @@ RESET-COUNTER. (From CRAM, except that a counter is also a variable.)"
   (shiftf (frame-data frame) nil))
 
 (defun signal-after-cleanup (first signal task)
-  "FIRST is the signal that caused a cleanup; SIGNAL is how the cleanup ended. Return NIL and FIRST
-if FIRST continues, or NIL alone if SIGNAL continues instead."
+  "FIRST is the signal that caused a cleanup; SIGNAL is how the cleanup ended. If FIRST propagates
+further, return NIL and FIRST. If SIGNAL propagates instead, return NIL."
   (let ((failed (typep signal 'plan-failure)))
     (when (or (eq first :evaporate) (and failed (not (completion-p first))))
       (when failed (note-suppressed-failure first signal task))

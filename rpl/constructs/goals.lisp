@@ -27,7 +27,7 @@
         (values shape (mapcar #'hole-variable (reverse holes)))))))
 
 (defun shape-matches-p (shape object values)
-  "True if SHAPE matches OBJECT. VALUES, a vector filled with itself, receives the values."
+  "True if SHAPE matches OBJECT. Store holes' values in VALUES; unset elements are VALUES itself."
   (cond ((hole-p shape)
          (let ((value (svref values (hole-index shape))))
            (cond ((eq value values) (setf (svref values (hole-index shape)) object) t)
@@ -63,14 +63,13 @@
 (addition goal-p)
 (define-record (goal (:constructor make-goal
                          (operator pattern shape variables procedure documentation)))
-  "A plan for the goals that match a pattern, as DEF-GOAL defines it."
+  "A plan for the goals that match a pattern, defined by DEF-GOAL."
   (operator nil symbol
             "the operator of the goal, ACHIEVE, PERCEIVE or BELIEF" :writable :addition)
   (pattern nil t "the pattern of the goal, as it was defined" :writable :addition)
   (shape nil t :writable)
   (variables '() list :writable)
-  (procedure nil (or null procedure) "the plan procedure with the parameters VARIABLES, or
-NIL" :writable)
+  (procedure nil (or null procedure) "the procedure with parameters VARIABLES, or NIL" :writable)
   (documentation nil (or null string) :writable))
 
 (defun goal-text (operator pattern)
@@ -153,13 +152,13 @@ NIL" :writable)
 (addition def-goal)
 (define-user-macro def-goal (&whole form (operator pattern) &body body &environment environment)
   "Define BODY as the plan for goals that match PATTERN, such as (on ?a ?b). OPERATOR is ACHIEVE,
-PERCEIVE or BELIEF. BODY is plan text, perhaps after a documentation string. In BODY the variables a
-and b have the values that ?a and ?b match. A variable that occurs twice must match the same value
-twice. A pattern may end in a dot and ?x. The value of the goal is the value of BODY, or the value
-given to SUCCEED-WITH. If several patterns match a goal, the most specific one is used, and among
-equals the one defined first. (CRAM uses the first pattern that matches.) A new pattern replaces an
-older one if only the names of the variables differ. Signals MALFORMED-DEFINITION. (From CRAM, with
-variables as in DEF-INTERP-MACRO.)"
+PERCEIVE or BELIEF. BODY is plan text and may start with a documentation string. In BODY the
+variables a and b have the values that ?a and ?b match. A variable that occurs twice must match the
+same value twice. A pattern may end in a dot and ?x. The value of the goal is the value of BODY, or
+the value given to SUCCEED-WITH. If several patterns match a goal, the most specific one is used,
+and among equals the one defined first. (CRAM uses the first pattern that matches.) A new pattern
+replaces an older one if only the names of the variables differ. Signals MALFORMED-DEFINITION. (From
+CRAM, with variables as in DEF-INTERP-MACRO.)"
   (let ((definition (format nil "def-goal (~(~A~) ...)" operator)))
     (expand-definition form environment
                        (lambda ()

@@ -31,8 +31,7 @@
 (addition policy-init-failed)
 (define-condition policy-init-failed (policy-failure)
   ()
-  (:documentation "The :INIT of a named policy returned false, so the body did not run (from
-CRAM)."))
+  (:documentation "The :INIT of a named policy returned false: the body did not run (CRAM)."))
 
 (addition policy-check-condition-met)
 (define-condition policy-check-condition-met (policy-failure)
@@ -93,7 +92,7 @@ NAME is evaluated. The value is kept while the policy is in force (from CRAM)."
 
 (addition policy-setf)
 (defmacro policy-setf (&whole form name value &environment environment)
-  "Store VALUE under NAME for the other clauses of a policy, and return VALUE. For use in such a
+  "Store VALUE under NAME for the other clauses of the policy, and return VALUE. For use in a
 clause. VALUE and NAME are evaluated. The value is kept while the policy is in force (from CRAM)."
   (check-inside-policy-clause form environment)
   `(store-policy-value ,+use-variable+ ,name ,value))
@@ -152,8 +151,7 @@ the policy. The clauses, after an optional documentation string, are plan text: 
                        form is tested at each tick.
   (:recover form...)   runs when the check has become true and the body has evaporated. Then the
                        policy fails with POLICY-CHECK-CONDITION-MET.
-  (:clean-up form...)  runs last, in every case, even if :INIT fails; but not if :INIT returned
-                       false.
+  (:clean-up form...)  runs last, even if :INIT fails, but not if :INIT returned false.
 The clauses share values by POLICY-GET and POLICY-SETF. See WITH-NAMED-POLICY. Return NAME. Signals
 MALFORMED-DEFINITION. (From CRAM, where the check is polled.)"
   (let ((definition (definition-title "define-policy" name))

@@ -113,7 +113,7 @@ EARLIER is true. WATCHER waits for EARLIER."
 ;;; Reading the constraints.
 
 (defun constraint-list (constraints)
-  "Return a list of all the (:order a b) forms that are elements of CONSTRAINTS or of its lists."
+  "Return a list of all (:order a b) forms in CONSTRAINTS, or in a list in CONSTRAINTS."
   (loop for constraint in constraints
         if (and (consp constraint) (consp (first constraint)))
           append constraint
@@ -153,7 +153,7 @@ EARLIER is true. WATCHER waits for EARLIER."
                                            while (consp tail) collect (car tail)))))))
 
 (defun precedences (orders nestings)
-  "Return a list of (earlier later), where each element is (:start name) or (:end name)."
+  "Return a list of pairs (earlier later) of events, each (:start name) or (:end name)."
   (append (loop for name in (remove-duplicates (mapcan #'copy-list (append orders nestings)))
                 collect (list (list :start name) (list :end name)))
           (loop for (earlier later) in orders

@@ -75,7 +75,7 @@
 
 (defun warn-of-swapped-policy (policy body form)
   "Warn if POLICY and BODY of FORM have probably been swapped. This is so if BODY is a WHENEVER that
-never ends and POLICY a list of steps, or if BODY only waits and then fails, as policies do."
+never ends and POLICY is a list of steps, or if BODY only waits and then fails, as policies do."
   (let ((endless-p (and (null (rest body)) (endless-whenever-p (first body)))))
     (when (and (not (looks-like-policy-p policy))
                (if endless-p

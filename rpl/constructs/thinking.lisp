@@ -6,10 +6,10 @@
 ;;; meanwhile, or all of them stop.
 
 (defun price-of (operator span unit)
-  "Return SPAN, OPERATOR's price, in ticks. UNIT is :ticks or :seconds. Signals WRONG-ARGUMENT."
+  "Return the price SPAN of OPERATOR in ticks. UNIT is :ticks or :seconds. Signals WRONG-ARGUMENT."
   (let ((span (fluent-value span)))
     (unless (amount-p span)
-      (reject-argument operator 'span span "a number not below 0, up to 1e15"))
+      (reject-argument operator 'span span "a number from 0 to 1e15"))
     (span-in-ticks span unit operator)))
 
 (defun price-lambda (operator span unit form scope)
@@ -69,7 +69,7 @@ other tasks stop meanwhile. The body of the WITH-CHARGE has ended with RESULT or
         0)))
 
 (defun start-uncharged-branch (body task environment)
-  "Start BODY as a part of TASK whose steps are not charged. Return what a step returns."
+  "Start BODY as a part of TASK whose steps are not charged. Return +PARKED+."
   (let ((branch (start-branch body task environment 0 (task-level task))))
     (when (runner-charged-p (task-runner task)) (setf (task-uncounted-p branch) t)))
   (await-parts task))
@@ -83,10 +83,10 @@ other tasks stop meanwhile. The body of the WITH-CHARGE has ended with RESULT or
 (define-construct with-charge ((span &key unit alone) &body body)
   "Run BODY in a plan, as a separate task, at the price of SPAN ticks, or seconds if UNIT is
 :seconds. Return the first value of BODY. If thinking is charged, the steps of BODY do not count.
-The value or failure of BODY then comes SPAN after the start of BODY, or when BODY ends if that is
-later. If ALONE is true, other tasks stop after BODY until the price is paid, as for THINK. If
-thinking is not charged, just run BODY. A task that evaporates does not wait for the rest of SPAN.
-Signals WRONG-ARGUMENT (manual 1.2)."
+WITH-CHARGE then ends SPAN after the start of BODY, or with BODY if BODY ends later. If ALONE is
+true, other tasks stop after BODY until the price is paid, as for THINK. If thinking is not charged,
+just run BODY. A task that evaporates does not wait for the rest of SPAN. Signals WRONG-ARGUMENT
+(manual 1.2)."
   (:arguments span alone)
   (:parts (span function (price-lambda 'with-charge span unit form scope))
           (alone function (value-lambda alone scope))

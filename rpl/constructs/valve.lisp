@@ -33,8 +33,7 @@
   (lost '() list "the valves that the claim has got and that another claim has taken" :writable)
   (outer '() list "conses (valve . claim): a valve that this claim has got, and the owner claim
 around this one" :writable)
-  (turns '() list "the turns of the claim in the lines of the valves while the claim
-waits" :writable))
+  (turns '() list "the turns of a waiting claim in the lines of its valves" :writable))
 
 (defstruct (line (:constructor make-line (valve priority level)) (:copier nil))
   "The queue of claims to VALVE with one PRIORITY, by tasks of one LEVEL, in order of arrival. A
@@ -99,7 +98,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
 
 (addition valve-losers)
 (defun valve-losers (valve)
-  "Return the tasks from which VALVE was taken and which will get it back, the next one first."
+  "Return the tasks that lost VALVE and will get it back, the next one first."
   (let* ((valve (entity-here valve)) (owner-claims (owner-claims valve)))
     (mapcar #'claim-task
             (remove-if (lambda (claim) (member claim owner-claims)) (valve-claims valve)))))
@@ -144,7 +143,7 @@ line is also a node of a tree: AHEAD and BEHIND are its subtrees, whose lines ha
     (block-task (claim-task claim) t)))
 
 (defun take-valve (valve claim)
-  "Grant VALVE to CLAIM. Return lists (VALVE rival) of the claims that lose VALVE, outermost first."
+  "Grant VALVE to CLAIM. Return (VALVE rival) for each claim that loses VALVE, outermost first."
   (let* ((owner-claims (owner-claims valve))
          (rivals (rivals valve (claim-task claim)))
          (outer (find-if-not (lambda (claim) (member claim rivals :test #'eq)) owner-claims)))

@@ -60,7 +60,7 @@ number up to 1e15. If SPAN is 0 or less, do not wait."
 ;;;; Waiting for a fluent
 
 (defun wake-waiter (watcher value trouble)
-  "Let the task of WATCHER, whose fluent became true, go on with VALUE or fail with TROUBLE."
+  "The fluent of WATCHER became true. Let its task go on with VALUE, or fail with TROUBLE."
   (let ((task (watcher-client watcher)))
     (unwatch watcher)
     (when (eq watcher (task-awaiting task))

@@ -37,8 +37,7 @@
   (links '() list :writable)
   (trouble nil (or null condition)
            "the error in the last computation of the fluent, or NIL" :writable)
-  (queued nil (member nil t :pulsed) "how the fluent will be recomputed; NIL if it need not
-be" :writable)
+  (queued nil (member nil t :pulsed) "how the fluent will be recomputed, or NIL" :writable)
   (successor nil (or null derived) :writable))
 
 (define-record (watcher (:constructor make-watcher (fluent wake client)))
@@ -48,8 +47,7 @@ value, and NIL or the error in computing the value."
   (wake #'list function
         "the function to call when the fluent becomes true: see WATCHER" :export)
   (client nil t "the object for which the watcher watches, such as a task" :export)
-  (pending 0 fixnum "how many events the watcher has received and not yet
-handled" :writable :export)
+  (pending 0 fixnum "the number of events not yet handled" :writable :export)
   (previous nil (or null watcher) :writable)
   (next nil (or null watcher) :writable))
 
@@ -189,7 +187,7 @@ If PULSED-P is true, these fluents are pulsed and never set."
   (eq t (first (gethash name *known-fluent-variables*))))
 
 (defun vector-variable-kind (name)
-  "Return the kind of part for which the variable NAME holds a vector of fluents; or NIL."
+  "If the variable NAME holds a vector of fluents for parts, return the kind of part; else NIL."
   (let ((kind (first (gethash name *known-fluent-variables*))))
     (and (stringp kind) kind)))
 
@@ -214,7 +212,7 @@ If PULSED-P is true, these fluents are pulsed and never set."
         when (string-equal name variable) return variable))
 
 (defun robot-fluent-p (fluent)
-  "True if FLUENT is a fluent that the robot sets. Such a fluent has the name of a known variable,
-or of an element of such a variable's vector."
+  "True if the robot sets FLUENT: FLUENT has the name of a known variable, or of an element of the
+vector in a known variable."
   (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
     (and (fluent-variable-named (subseq name 0 space)) t)))

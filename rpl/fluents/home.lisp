@@ -45,8 +45,8 @@ entry, or NIL" :writable))
   "The default owner of plans and fluents, or NIL: see RPL-INIT-ROBOT.")
 
 (defgeneric default-home (interface)
-  (:documentation "Return the home, or NIL, in which code outside of INTERFACE's plans changes a
-fluent without a home.")
+  (:documentation "Code outside of INTERFACE's plans changes a fluent without a home. Return the
+home for this change, or NIL.")
   (:method (interface) (declare (ignore interface)) nil))
 
 (defgeneric note-outside-change (interface function fluent value)

@@ -181,14 +181,14 @@ fluent, named NAME, instead. Its value is always FUNCTION of the current values 
 
 (addition fl-funcall)
 (defun fl-funcall (function &rest arguments)
-  "Return a fluent. Its value is always FUNCTION of the current values of ARGUMENTS; some of them
+  "Return a fluent whose value is always FUNCTION of the current values of ARGUMENTS, some of which
 are fluents. FUNCTION must depend on nothing else and must not set fluents. If no argument is a
 fluent, call FUNCTION at once."
   (apply #'lift (function-label function) (coerce function 'function) arguments))
 
 (addition fl-apply)
 (defun fl-apply (function &rest arguments)
-  "Do as FL-FUNCALL, where the last of ARGUMENTS is a list of further arguments, as for APPLY."
+  "Do as FL-FUNCALL, but the last of ARGUMENTS is a list of arguments, as for APPLY."
   (apply #'fl-funcall function (apply #'list* arguments)))
 
 (defun depends-p (fluent source)
@@ -303,7 +303,7 @@ because the values of fluents may refer to each other.")
                               :format-arguments (list (fluent-text fluent))))))))
 
 (defun repair-fluents (home watchers unwanted-p)
-  "Register again in HOME: WATCHERS and other watchers of their fluents, except UNWANTED-P ones."
+  "Register WATCHERS again in HOME, and other watchers of their fluents except UNWANTED-P ones."
   (let* ((fluents (reachable-fluents watchers))
          (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
          (all (append listed (set-difference watchers listed))))

@@ -24,7 +24,7 @@
       (setf (view-memory view) (if (view-always-p view) (1+ seen) events)))))
 
 (defun change-since-reading (view value)
-  "Return a number if VALUE, of VIEW's fluent, has changed since VIEW was last read; or NIL."
+  "Return a number if VALUE, the value of VIEW's fluent, changed since VIEW was last read; or NIL."
   (destructuring-bind (sets . last) (view-memory view)
     (let ((now (count-settings (view-bases view))))
       (unless (= sets now)
@@ -151,39 +151,39 @@ further thunks when the result is certain. From the first fluent on, the result 
 (define-lifted-functions not null < > <= >= = + - * / eq eql equal)
 
 (defmacro lifted:and (&rest forms)
-  "Do as Lisp's AND. If a form's value is a fluent, return a network of it and the remaining forms."
+  "Like Lisp's AND. If a form's value is a fluent, return a network of it and the remaining forms."
   (cond ((null forms) t)
         ((null (rest forms)) (first forms))
         (t `(lift-junction 'and #'every-value nil
                            (list ,@(loop for form in forms collect `(lambda () ,form)))))))
 
 (defmacro lifted:or (&rest forms)
-  "Do as Lisp's OR. If a form's value is a fluent, return a network of it and the remaining forms."
+  "Like Lisp's OR. If a form's value is a fluent, return a network of it and the remaining forms."
   (if (rest forms)
       `(lift-junction 'or #'some-value t
                       (list ,@(loop for form in forms collect `(lambda () ,form))))
       (first forms)))
 
 (defmacro lifted:if (test then &optional else)
-  "Do as Lisp's IF. TEST may be a fluent; then the value of the fluent counts (manual D.2)."
+  "Like Lisp's IF, but TEST may be a fluent, whose value counts (manual D.2)."
   `(if (truth-value ,test) ,then ,else))
 
 (defmacro lifted:when (test &body body)
-  "Do as Lisp's WHEN. TEST may be a fluent; then the value of the fluent counts."
+  "Like Lisp's WHEN, but TEST may be a fluent, whose value counts."
   `(when (truth-value ,test) ,@body))
 
 (defmacro lifted:unless (test &body body)
-  "Do as Lisp's UNLESS. TEST may be a fluent; then the value of the fluent counts."
+  "Like Lisp's UNLESS, but TEST may be a fluent, whose value counts."
   `(unless (truth-value ,test) ,@body))
 
 (defmacro lifted:cond (&rest clauses)
-  "Do as Lisp's COND. A test may be a fluent; then the value of the fluent counts."
+  "Like Lisp's COND, but a test may be a fluent, whose value counts."
   `(cond ,@(loop for (test . body) in clauses
                  collect `((truth-value ,test) ,@body))))
 
 (defmacro lifted:loop (&rest forms)
-  "Do as Lisp's LOOP. In (loop UNTIL test ...) and (loop WHILE test ...), the test may be a fluent;
-then the value of the fluent counts (manual D.2)."
+  "Like Lisp's LOOP, but the test in (loop UNTIL test ...) and (loop WHILE test ...) may be a
+fluent, whose value counts (manual D.2)."
   (cond ((and (symbolp (first forms)) (string= (first forms) "UNTIL"))
          `(loop (when (truth-value ,(second forms)) (return)) ,@(cddr forms)))
         ((and (symbolp (first forms)) (string= (first forms) "WHILE"))

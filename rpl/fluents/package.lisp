@@ -9,7 +9,7 @@ a network. In a plan, the operators of Common Lisp have this meaning by themselv
            #:and #:or #:not #:null #:< #:> #:<= #:>= #:= #:+ #:- #:* #:/ #:eq #:eql #:equal))
 
 (ars-magna.host:define-package :ars-magna.rpl.fluents
-  (:documentation "Fluents, networks of fluents, and how a change reaches watchers. This package
-does not depend on plans.")
+  (:documentation "Fluents, networks of them, and how a change reaches watchers. Independent of
+plans.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:local-nicknames (:lifted :ars-magna.rpl.lifted)))

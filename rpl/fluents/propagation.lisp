@@ -13,8 +13,8 @@
 ;;; does not change them. The change back notifies the watchers of what was false at the instant.
 
 (defvar *propagating* nil
-  "NIL, or, while a change spreads through networks, a list of one element. The element is the list
-of views that are true for the instant of the change. Meanwhile networks must not set fluents.")
+  "While a change spreads through networks, a list whose only element is a list of the views that
+are true for the instant of the change; otherwise NIL. Meanwhile networks must not set fluents.")
 
 (defun backlog-now ()
   (if *runner* (home-backlog *runner*) (make-backlog)))
@@ -44,7 +44,7 @@ of views that are true for the instant of the change. Meanwhile networks must no
     (setf (svref (backlog-tails backlog) height) derived)))
 
 (defun enqueue (derived backlog how)
-  "Put DERIVED into BACKLOG, to be renewed in its turn. HOW is as for RENEW."
+  "Put DERIVED into BACKLOG, to be renewed later. HOW is as for RENEW-DERIVED-FLUENT."
   (unless (derived-queued derived)
     (setf (derived-queued derived) how)
     (append-to-backlog derived backlog (fluent-height derived)))
@@ -91,7 +91,7 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
            :pulsed))))
 
 (defun propagate-by-height (backlog &optional (kind :change))
-  "Renew the fluents in BACKLOG and those that depend on them, lowest height first. See RENEW."
+  "Renew the fluents in BACKLOG and those that depend on them, lowest height first."
   (loop for height from 1
         while (<= height (backlog-highest backlog))
         do (loop
@@ -136,7 +136,7 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
                    (unless how (return)))))))))
 
 (defun propagate (fluent kind)
-  "Notify watchers and dependents of the base fluent FLUENT of a change or pulse (KIND: see RENEW)."
+  "Notify watchers and dependents of the base fluent FLUENT of the change or pulse KIND."
   (notify-watchers fluent)
   (when (fluent-first-link fluent)
     (propagate-to-dependents fluent kind)))
@@ -237,7 +237,7 @@ effect when the running plans pause (manual D.2)."
     (propagate-pulse-end fluents)))
 
 (defun propagate-pulse-end (fluents)
-  "Recompute the fluents that depend on FLUENTS when FLUENTS have their old values after a pulse."
+  "FLUENTS have their old values again after a pulse. Recompute the fluents that depend on them."
   (when (some #'fluent-first-link fluents)
     (let ((backlog (backlog-now)))
       (with-propagation

@@ -46,8 +46,7 @@ set" :writable :export)
   (realm *realm* realm "the realm that the entity belongs to" :writable :export)
   (token 0 fixnum :writable)
   (seen 0 fixnum :writable)
-  (first nil t "a weak reference to the oldest of all twins, or NIL if no twin has been
-made" :writable))
+  (first nil t "a weak reference to the oldest twin, or NIL without twins" :writable))
 
 (define-shared-slots entity first)
 
@@ -63,8 +62,8 @@ made" :writable))
         while each thereis (eq each ancestor)))
 
 (defun entity-in (entity realm)
-  "Return the object that represents ENTITY in REALM. The object is a twin if REALM was forked from
-the realm of ENTITY or replaces it, and ENTITY otherwise."
+  "Return the object that represents ENTITY in REALM. If REALM was forked from the realm of ENTITY
+or replaces it, return the twin; otherwise ENTITY."
   (cond ((eq realm (entity-realm entity)) entity)
         ((descends-p realm (entity-realm entity))
          (or (known-twin entity realm)

@@ -13,8 +13,8 @@
   (:step (enter-tail body (the simple-vector (funcall fill environment)) frame)))
 
 (define-expression filling
-  "Runs BODY in an environment of the values of PARTS, some of which may wait. A frame counts the
-parts begun; its memory is the new environment."
+  "Runs BODY in an environment of the values of PARTS, some of which may wait. The frame's counter
+says how many parts have begun; its memory is the new environment."
   (:parts (parts simple-vector) (sequential t) (body node))
   (:step
    (let ((i (frame-counter frame))

@@ -12,7 +12,7 @@
         (values (make-frame node environment up) nil))))
 
 (define-expression steps
-  "Runs one or more expressions in order. A frame counts the expressions begun."
+  "Runs one or more expressions in order. The frame's counter says how many have begun."
   (:hot)
   (:parts (parts simple-vector))
   (:step

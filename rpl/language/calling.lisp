@@ -104,7 +104,7 @@ tasks. A deeper call fails with class :TOO-DEEP. The limit stops endless recursi
 ;;;; Calls with a list of arguments
 
 (defstruct (application (:include call-plan-node) (:copier nil))
-  "A call of a plan with a list of arguments. Plan and list are the variables of its environment.")
+  "A call of a plan with a list of arguments. Its environment contains the plan and the list.")
 
 (define-global +application+
     (make-application :form '(call-plan)

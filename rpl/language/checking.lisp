@@ -24,7 +24,7 @@
   (warn-at-form #'warn-of-style form control arguments))
 
 (defun style-warn-of-plan-text (form control &rest arguments)
-  "Do as STYLE-WARN-OF-FORM if FORM belongs to the text of the plan itself."
+  "If FORM belongs to the text of the plan itself, warn as STYLE-WARN-OF-FORM does."
   (when (plan-text-p form)
     (warn-at-form #'warn-of-style form control arguments)))
 
@@ -38,7 +38,6 @@
         (push symbol names)))))
 
 (defun nearest-operator (name)
-  "Return the name of the known operator most similar to NAME, or NIL."
   (let ((nearest (and (< 1 (length (symbol-name name)))
                       (nearest-name name (known-operators)))))
     (and nearest (plain-name nearest))))
@@ -69,11 +68,11 @@ construct of NISP. In packages that do not use NISP, WAIT-FOR is such a macro."
 
 (defgeneric advice-on-call (name)
   (:documentation "Return sentences about why the symbol NAME is not the name of a plan procedure or
-function, and what to write instead; or NIL. Layers that know more names have methods.")
+function, and what to write instead; or NIL. Other layers add methods for the names they know.")
   (:method (name) (declare (ignore name)) nil))
 
 (defun unknown-call-remedy (name)
-  "Return advice with NAME on what to write instead, or NIL. NAME is no plan procedure or function."
+  "NAME is no plan procedure or function. Return NAME and what to write instead, as text; or NIL."
   (let ((namesake (find-procedure name nil)) (advice (advice-on-call name)))
     (cond (namesake
            (format nil "~(~S~). If you mean the plan in another package, write ~(~S~)."
@@ -107,7 +106,7 @@ function, and what to write instead; or NIL. Layers that know more names have me
           (t (warn-of-unknown-call form)))))
 
 (defun check-later (check form)
-  "Call CHECK with FORM, at this place and in this package, at the end of the compilation unit."
+  "At the end of the compilation unit, call CHECK with FORM in the present file and package."
   (let ((definition *definition*) (package *package*) (file *compile-file-truename*)
         (loaded *load-truename*))
     (at-end-of-unit form
@@ -149,7 +148,7 @@ names are checked at the end of the compilation unit."
                  (loop for key in (shape-keys shape) collect (format nil "~S ~S" key value))))))
 
 (defun argument-mistake-text (form lambda-list)
-  "Return a text of the mistake in the arguments of FORM, or in a list of options in FORM; or NIL.
+  "Return a text about a mistake in the arguments of FORM or in a list of options in FORM; or NIL.
 FORM calls a construct with LAMBDA-LIST. A mistake is a keyword that LAMBDA-LIST does not have, or
 another form in the place of a keyword or a list of options."
   (let ((shape (lambda-list-shape lambda-list)))
@@ -220,7 +219,6 @@ later, nor inside a call for which TEST returns :NOWHERE."
                                   (declare (ignore ~:*~(~A~)))." variable)))))
 
 (defun check-distinct-variables (variables form)
-  "Signal MALFORMED-DEFINITION if FORM binds one of VARIABLES twice."
   (let ((twice (loop for (variable . more) on variables
                      when (member variable more) return variable)))
     (when twice

@@ -26,7 +26,7 @@
         (t `(operand-value ,form))))
 
 (defun condition-form (form environment)
-  "Return a form that is true if FORM is true, where the value of a fluent counts."
+  "Return a form that is true if FORM is true. A fluent in FORM counts as its value."
   (flet ((conditions (operator)
            (copy-source-location `(,operator ,@(loop for form in (rest form)
                                                      collect (condition-form form environment)))
@@ -129,12 +129,12 @@
   (leaf-lambda `(checked-condition ,(as-lisp form scope)) scope))
 
 (defun awaited-lambda (condition form scope)
-  "Do as CONDITION-LAMBDA for CONDITION, which FORM waits for, and warn of mistakes in CONDITION."
+  "Do as CONDITION-LAMBDA, and warn of mistakes in CONDITION. FORM waits for CONDITION."
   (check-awaited condition form scope)
   (condition-lambda condition scope))
 
 (defun value-lambda (form scope)
-  "Return a lambda expression that returns the first value of FORM, for an environment."
+  "Return a lambda expression that takes an environment and returns the first value of FORM."
   (leaf-lambda (as-lisp form scope) scope))
 
 (defun bundle-several-values (&optional value &rest more)

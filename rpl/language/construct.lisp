@@ -25,7 +25,7 @@
       (reject-name "state" name names)))
 
 (defun with-node-form (name clauses forms)
-  "Return a form that runs FORMS with the parts and states that CLAUSES give nodes of type NAME."
+  "Return a form that runs FORMS with the parts and states from the CLAUSES of node type NAME."
   (let ((states (mapcar #'first (clause-rest :steps clauses))))
     `(symbol-macrolet (,@(loop for part in (clause-rest :parts clauses)
                                collect `(,(first part) (,(symbolicate name '- (first part)) node)))
@@ -60,7 +60,7 @@
      ,(with-node-form name clauses forms)))
 
 (defun node-function-specs (name clauses)
-  "Return lists (slot function definition) for the slots that CLAUSES give a node of type NAME."
+  "Return lists (slot function definition) for the slots from the CLAUSES of node type NAME."
   (flet ((row (slot prefix variables forms)
            (when forms
              (let ((function (symbolicate prefix '- name)))
@@ -74,9 +74,9 @@
                  (clause-rest :child-ended clauses)))))
 
 (defmacro define-expression (name documentation &body clauses)
-  "Define NAME as a type of nodes, a structure. DOCUMENTATION says what the nodes do. CLAUSES:
-(:parts (name type)...): the slots of the node, besides those of all nodes. All must be given to
-MAKE-NAME.
+  "Define the structure NAME, a type of nodes. DOCUMENTATION says what the nodes do. CLAUSES:
+(:parts (name type)...): the slots of the node, in addition to the slots of all nodes. MAKE-NAME
+requires them all.
 (:steps (state form...)...): the forms of a step in each state. A frame begins in the first state.
 The forms of another state run when the activity that the frame started for this state, such as an
 inner expression, has ended. These variables are visible: NODE, TASK, FRAME, VALUE (the value of the
@@ -86,8 +86,8 @@ step now. The forms return the next frame and its value. (values (frame-up frame
 expression, (enter part environment frame) runs a part, and +PARKED+ means that TASK now waits.
 (:step form...): the forms of a step in an expression without states, which may use (frame-counter
 frame).
-(:unwind form...): the forms that run when SIGNAL passes, see NODE. (in-state-p state) is true if
-the frame is in that state.
+(:unwind form...): the forms that run when SIGNAL passes through the node: see NODE. (in-state-p
+state) is true if the frame is in that state.
 (:child-ended form...): the forms that run when CHILD has ended as HOW with RESULT. (:hot): compile
 the functions for speed, because a profile has shown that this matters."
   (check-clauses "define-expression" name clauses

@@ -56,7 +56,7 @@ next call, also in running plans (manual D.2)."
 (addition interp-lambda)
 (define-user-macro interp-lambda ((&rest parameters) &body body &environment environment)
   "Return a nameless plan procedure. PARAMETERS and BODY are as for DEF-INTERP-PROC. BODY sees the
-variables around INTERP-LAMBDA, not blocks, tags and local plans. Run the procedure by CALL-PLAN."
+variables around INTERP-LAMBDA, but not blocks, tags and local plans. Run the plan by CALL-PLAN."
   (let ((parameters (untyped-parameters parameters (list* 'interp-lambda parameters body)
                                         environment
                                         (if *definition* (text-title) "interp-lambda")))

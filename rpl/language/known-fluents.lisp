@@ -13,7 +13,7 @@
   "Names of functions that always return a fluent.")
 
 (defun form-vector-kind (form)
-  "Return the kind of part for which FORM is the variable of a vector of fluents; or NIL."
+  "If FORM is the variable of a vector of fluents for parts, return the kind of part; else NIL."
   (and (symbolp form) (vector-variable-kind form)))
 
 (defun known-fluent-p (form environment)
@@ -42,7 +42,7 @@
 
 (defun known-non-fluent-p (form environment)
   "True if FORM, in ENVIRONMENT, is known to return a value that is no fluent. Such forms are
-constants, calls of FLUENT-VALUE, and calls of lifted operators with them alone."
+constants, calls of FLUENT-VALUE, and calls of lifted operators with only such arguments."
   (cond ((constantp form) t)
         ((not (and (consp form) (symbolp (first form)) (proper-list-p form))) nil)
         ((local-function-p (first form) environment) nil)

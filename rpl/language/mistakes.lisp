@@ -7,7 +7,7 @@
 ;;; that Lisp runs, but not in what these only call later.
 
 (defvar *mistakes* '()
-  "A property list from :TEXT and :LEAF to lists of the names of rules for mistakes.")
+  "A property list from :TEXT and :LEAF to lists of rule names: see DEFINE-MISTAKE.")
 
 (defmacro define-mistake (name where (form) documentation &body body)
   "Define the rule NAME, a function that returns sentences about a mistake in FORM, a call; or NIL.

@@ -30,7 +30,7 @@
    (getting-result (unwind task frame (make-escape target value)))))
 
 (setf (documentation 'make-leave 'function)
-      "Return a node that leaves a block. Slots: TARGET, the block's node; RESULT, the value's.")
+      "Return a node that leaves the block of node TARGET with the value of node RESULT.")
 
 (defun block-code (name form scope coder)
   "Return the code that CODER returns for a scope inside a block with the name NAME. FORM is the
@@ -57,7 +57,7 @@ source of the block. The code has a node for the block only if some form leaves 
 ;;; Tags.
 
 (define-expression tag-body
-  "Runs expressions in order; some are targets of jumps. A frame counts the expressions begun."
+  "Runs expressions, some of them targets of jumps. The frame's counter says how many have begun."
   (:parts (parts simple-vector))
   (:step
    (let ((i (frame-counter frame)))
@@ -71,7 +71,7 @@ source of the block. The code has a node for the block only if some form leaves 
      (values t frame nil))))
 
 (define-expression jump
-  "Continues at the expression number PLACE of TARGET."
+  "Jumps to expression number PLACE of TARGET."
   (:parts (target node) (place fixnum))
   (:step (unwind task (frame-up frame) (make-escape target place))))
 
@@ -98,19 +98,19 @@ source of the block. The code has a node for the block only if some form leaves 
 ;;; them out. All of these can be left by RETURN.
 
 (defun give-way (task)
-  "Let other ready tasks run before TASK continues. Return what a step returns."
+  "Let other ready tasks run before TASK continues. Return +PARKED+."
   (make-ready task)
   +parked+)
 
 (defun repetition-count (count)
   (let ((count (fluent-value count)))
     (check-argument n-times count (bounded-number-p count)
-                    "a number of turns, from -1e15 to 1e15, as in (n-times count form...)")
+                    "a number of times, from -1e15 to 1e15, as in (n-times count form...)")
     count))
 
 (define-expression turns
   "Runs BODY repeatedly, while the function UNTIL returns false for the environment. The function
-TIMES returns the largest number of turns, or NIL for no limit. A frame counts down the turns."
+TIMES returns the maximum number of iterations, or NIL for no limit. A frame counts them down."
   (:hot)                                ; 40 ns a turn
   (:parts (until function) (times function) (body node))
   (:steps
@@ -137,8 +137,8 @@ TIMES returns the largest number of turns, or NIL for no limit. A frame counts d
         (t (values nil forms))))
 
 (defun loop-code (form count forms scope)
-  "Return code for a loop of FORMS, which follow LOOP or N-TIMES. COUNT is the form for the largest
-number of turns, or NIL if there is no limit."
+  "Return code for a loop of FORMS, which follow LOOP or N-TIMES. COUNT is a form for the maximum
+number of iterations, or NIL for no limit."
   (multiple-value-bind (test body) (split-loop-test forms)
     (if (suspends-p test scope)
         (loop-code form count
@@ -156,8 +156,8 @@ number of turns, or NIL if there is no limit."
   (loop-code form nil forms scope))
 
 (define-construct n-times (count &body body)
-  "Run BODY in a plan COUNT times, one turn after the other. BODY may start with UNTIL or WHILE and
-a test, which is evaluated before each turn. COUNT is a number up to 1e15. Return NIL."
+  "Run BODY in a plan COUNT times in sequence. BODY may start with UNTIL or WHILE and a test, which
+is evaluated before each iteration. COUNT is a number up to 1e15. Return NIL."
   (:arguments count)
   (:code (loop-code form (note-plan-text `(repetition-count ,count)) body scope)))
 
@@ -171,7 +171,6 @@ unless SEQUENCE is a vector or a proper list."
   (coerce sequence 'list))
 
 (defun checked-proper-list (operator list)
-  "Return LIST, over which OPERATOR iterates. Signals WRONG-ARGUMENT unless LIST is a proper list."
   (unless (proper-list-p list)
     (reject-argument operator 'list list "a proper list"))
   list)
@@ -194,7 +193,7 @@ Afterwards runs ENDING in an environment with NIL. A frame remembers the element
 
 (define-expression each-number
   "Runs BODY once for each integer N from 0 to one less than the value of LIMIT, in an environment
-that contains N. Afterwards runs ENDING in an environment with the number of turns. A frame
+that contains N. Afterwards runs ENDING in an environment with the number of iterations. A frame
 remembers a cons of the next number and the limit."
   (:parts (limit function) (body node) (ending node))
   (:steps

@@ -123,8 +123,7 @@ has a separate variable, because a leaf of a plan can contain other plans" :writ
   (environment nil t "the Lisp environment at the place" :writable :export)
   (level 0 fixnum :writable)
   (layers '() list "the layers of names that are made visible in leaves, innermost first" :writable)
-  (blocks '() list "an alist from the names of the blocks around the place to the variables of their
-nodes" :writable :export)
+  (blocks '() list "an alist from block names to the variables of their nodes" :writable :export)
   (tags '() list :writable)
   (procedures '() list :writable)
   (retry nil symbol
@@ -142,7 +141,7 @@ nodes" :writable :export)
        ,inner)))
 
 (defun layered-scope (scope layer level &rest additions)
-  "Return a copy of SCOPE with LAYER, at LEVEL, innermost, and ADDITIONS in its Lisp environment."
+  "Return a copy of SCOPE with the new layer LAYER at LEVEL, and ADDITIONS to its Lisp environment."
   (inner-scope scope
                :level level
                :layers (cons layer (scope-layers scope))
@@ -219,7 +218,7 @@ nodes" :writable :export)
   (second (element-form scope level 0)))
 
 (defun layer-wrapping (layer scope)
-  "Return a form that makes LAYER visible in a leaf of SCOPE. The body of the form is missing."
+  "Return a form that makes LAYER visible in a leaf of SCOPE. The caller appends the body."
   (destructuring-bind (kind &rest parts) layer
     (ecase kind
       (:variables

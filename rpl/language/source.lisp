@@ -34,10 +34,8 @@
   (:documentation "A plan waits, fails or runs another plan inside a form that only Lisp runs."))
 
 (setf (documentation 'misplaced-form 'function) "Return the form that would make the task wait."
-      (documentation 'misplaced-container 'function) "Return the form in which the plan cannot
-wait."
-      (documentation 'misplaced-advice 'function) "Return a sentence about what to write instead of
-the misplaced form.")
+      (documentation 'misplaced-container 'function) "Return the form in which plans cannot wait."
+      (documentation 'misplaced-advice 'function) "Return a sentence about what to write instead.")
 
 (defun operator-text (form)
   (format nil "~(~A~)" (if (consp form) (first form) form)))
@@ -107,7 +105,7 @@ Lisp code, and looks like the prompt's command PLAN."
               form (plan-named-in form)))
 
 (defvar *conses-of-plan-text* nil
-  "A table of the conses of the text of the plan that is being compiled; NIL outside of plans.")
+  "While a plan is compiled, a table of all conses in its text; otherwise NIL.")
 
 (defmacro plan-only-form (form)
   "While a plan is compiled, expand to a form that stands for FORM, a form of the plan language.

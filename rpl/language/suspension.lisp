@@ -15,7 +15,7 @@ SUSPENSION. COMPILER takes the form and its scope and returns code that builds a
   (compiler #'list :type function :read-only t))
 
 (defvar *plan-forms* (make-hash-table :test 'equal)
-  "A table from operators, names or users' symbols, to their special meanings in plans.")
+  "A table from operators, each a name or a user's symbol, to PLAN-FORMs.")
 
 (defparameter *waking-functions* '("SET-VALUE" "PULSE" "SUSPEND" "WAKE-UP")
   "Names of functions that may make other tasks ready.")
@@ -39,7 +39,7 @@ SUSPENSION. COMPILER takes the form and its scope and returns code that builds a
              (assoc name (scope-blocks scope))))))
 
 (defun check-plan-text-form (form environment)
-  "Signal MALFORMED-DEFINITION if FORM, in the text of a plan, is a wrong IF, a LET of a task
+  "Signal MALFORMED-DEFINITION if FORM, in the text of a plan, is a malformed IF, a LET of a task
 variable, or a binding of something that cannot be bound."
   (when (plan-text-p form)
     (check-bound-names form environment)
@@ -116,7 +116,7 @@ variable, or a binding of something that cannot be bound."
              (procedure-name-p (first form))))))
 
 (defun suspension (form scope)
-  "Return :MUST, :MAY or NIL: whether FORM makes its task wait. Return also the part that does."
+  "Return :MUST, :MAY or NIL: whether FORM makes its task wait. Also return the part that waits."
   (let ((result nil) (reason nil))
     (labels ((note (kind form)
                (when (or (null result) (and (eq kind :must) (eq result :may)))

@@ -86,7 +86,7 @@ environment of SCOPE, from index FIRST on."
                                   (scope-task-tags scope))))
 
 (defun with-tags-code (form names scope coder)
-  "Return the code that CODER returns for a scope with NAMES bound to tasks. FORM is its source."
+  "Return the code that CODER returns for a scope with NAMES bound to tasks, for the source FORM."
   (if names
       `(make-binding
         :form ',(form-as-written form)
@@ -177,9 +177,9 @@ WITH-TASK-BLOCKED), :suspended (by SUSPEND, WITH-TASK-SUSPENDED or the loss of a
 
 (addition task-code)
 (defun task-code (path)
-  "Return the plan text that tasks at PATH run from their next start on, and true if this text
-replaces the original. PATH is a list of a plan, or its name, and a tag in this plan. Tags around
-this tag may come before the tag. Of nested places, the outermost is used. Signals UNKNOWN-NAME and
+  "Return the plan text that tasks at PATH run when they next start, and true if this text replaces
+the original. PATH is a list of a plan, or its name, and a tag in this plan. Tags around this tag
+may come before the tag. Of nested places, the outermost is used. Signals UNKNOWN-NAME and
 WRONG-ARGUMENT. Signals MISUSE unless PATH leads to exactly one place."
   (let ((node (find-tagged-node 'task-code path)))
     (if (tagged-replaced node)
@@ -188,7 +188,7 @@ WRONG-ARGUMENT. Signals MISUSE unless PATH leads to exactly one place."
 
 (addition replace-task-code)
 (defun replace-task-code (path form &key compile)
-  "Let tasks at PATH run FORM, plan text, from their next start on (for PATH see TASK-CODE). Running
+  "Let tasks at PATH run the plan text FORM when they next start (for PATH see TASK-CODE). Running
 tasks are not affected. FORM can use the variables visible at the tag, but not the blocks, tags and
 local plans there. The Lisp code in FORM is interpreted, as by MAKE-PLAN, or compiled if COMPILE is
 true. Redefining the plan discards FORM. Return FORM. Signals the errors of TASK-CODE, and
@@ -207,7 +207,7 @@ MALFORMED-DEFINITION. (From CRAM, where REPLACE-TASK-CODE takes a function.)"
 
 (addition restore-task-code)
 (defun restore-task-code (path)
-  "Restore the code of tasks at PATH (see TASK-CODE) from their next start on. Return the code."
+  "Let tasks at PATH (see TASK-CODE) run the original code when they next start. Return that code."
   (let ((node (find-tagged-node 'restore-task-code path)))
     (when (tagged-replaced node)
       (setf (tagged-body node) (second (tagged-replaced node))

@@ -76,7 +76,6 @@ MOST labels. The number is 1, 2 or 5 times a power of ten."
                       (max 0 (- width thick thick)) (- height thick thick) t))))
 
 (defun draw-black-wedge (canvas x y width height)
-  "Draw a black wedge that points down, with a white rim."
   (flet ((draw (color more)
            (with-gcontext (draw-gcontext* :foreground color)
              (draw-lines canvas draw-gcontext*

@@ -117,7 +117,7 @@ right if the parts are folded."
 ;;; The whole.
 
 (defun omitted-tasks-text (image)
-  "Return a text about the number of tasks that IMAGE, a tree, leaves out, or NIL if it shows all."
+  "Return how many tasks the tree IMAGE leaves out, as text; or NIL if it shows all."
   (let ((unseen (- (tree-image-tasks image) (length (tree-image-rows image)))))
     (and (plusp unseen)
          (format nil "~D more task~:P not shown: folded, or beyond the limit." unseen))))

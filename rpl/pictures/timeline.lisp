@@ -236,8 +236,8 @@ the y coordinate of the end of PAGE, in pixels."
     (file &key runner (most 1000) (in-color t) title (scale 1))
   "Save in FILE a timeline of the plans that have run, replacing an older file. The name ends in
 .svg or, if the program rsvg-convert is installed, in .png. Each task is a bar over ticks, below the
-bar of its parent task, with its waits, its commands while they were in progress, and its end. Turns
-of a loop share a row. Return the truename of FILE. Signals WRONG-ARGUMENT and MISUSE.
+bar of its parent task, with its waits, its commands while they were in progress, and its end.
+Iterations of a loop share a row. Return the truename of FILE. Signals WRONG-ARGUMENT and MISUSE.
   RUNNER: the plan runner, by default the plan runner in use. RUNNER must have a trace: see
 *TRACE-PLANS*.
   MOST: the largest number of rows to draw.

@@ -19,8 +19,8 @@ list of a plan and its arguments. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
       call)))
 
 (defun make-question (task interface plan arguments options)
-  "Return the question how PLAN may end. TASK asks it, or is NIL outside of plans. PLAN is a task of
-INTERFACE, a plan for the list ARGUMENTS, or a list of a plan and its arguments. Signals
+  "Return a question about how PLAN may end. TASK asks it, or is NIL outside of plans. PLAN is a
+task of INTERFACE, a plan for the list ARGUMENTS, or a list of a plan and its arguments. Signals
 UNKNOWN-NAME and WRONG-ARGUMENT."
   (let ((options (checked-options 'project options)))
     (when (and (task-p plan) arguments)
@@ -56,7 +56,7 @@ WRONG-ARGUMENT if there is a WORLD, because tasks do not exist in believed world
                      RUN-PLAN."))))
 
 (defun pose-question (question task)
-  "Let TASK wait for the answer to QUESTION. Return the value for a step whose task waits."
+  "Let TASK wait for the answer to QUESTION. Return +PARKED+."
   (park task question)
   (add-wish question)
   +parked+)
@@ -131,7 +131,7 @@ McDermott's projection of reactive plans, 1992.)"
                        (runner-client (task-runner plan))
                        (ensure-interface))))
     (when (holding-plans-p interface)
-      (reject-use "project: a plan is at work here. Write PROJECT in the text of the plan itself, ~
+      (reject-use "project: a plan is running here. Write PROJECT in the text of the plan itself, ~
                    outside of any lambda."))
     interface))
 
@@ -158,7 +158,7 @@ UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
 ;;;; Doing what goes best
 
 (defun question-of-branches (task forms options)
-  "Return TASK's question, with OPTIONS, which of FORMS is best; NIL if there is only one form."
+  "Return TASK's question about the best of FORMS, with OPTIONS; NIL if there is only one form."
   (let ((options (checked-options 'try-best options)))
     (and (rest forms)
          (%make-question :operator 'try-best :task task :interface (asking-interface task)

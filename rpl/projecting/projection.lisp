@@ -6,7 +6,7 @@
 
 (defstruct (rollout-start (:constructor make-rollout-start (question moment branch)) (:copier nil))
   "The start of rollouts that try BRANCH, a number, of QUESTION. MOMENT is a fork where a copy of
-QUESTION awaits its answer; rollouts are forks of it. Without it, they begin in a believed world."
+QUESTION awaits its answer; rollouts fork it. Without MOMENT, they begin in a believed world."
   (question nil :read-only t)
   (moment nil :read-only t)
   (branch 0 :type fixnum :read-only t))
@@ -39,7 +39,7 @@ without waiting" :addition)
 
 (addition rollout-value)
 (defun rollout-value (rollout)
-  "Return the value of ROLLOUT's plan if it succeeded, or NIL. It may belong to a finished run."
+  "Return the value of ROLLOUT's plan if it succeeded, or NIL. The value may be of a finished run."
   (and (rollout-succeeded-p rollout) (rollout-result rollout)))
 
 (addition rollout-failure)

@@ -115,7 +115,7 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
                (wish-task question)))
 
 (defun project-branch (question moment branch)
-  "Return the projection of BRANCH, a number, of QUESTION, by rollouts from MOMENT: see SCENE."
+  "Return a projection of branch number BRANCH of QUESTION, by rollouts from MOMENT."
   (let ((scene (make-rollout-start question moment branch)))
     (make-projection (question-text question branch)
                      (if moment (simulation-tick moment) 0)

@@ -88,7 +88,7 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
 ;;; read, but not changed or commanded. Fluents have a realm for each rollout.
 
 (defun object-of-run (object)
-  "Return OBJECT, or an element of the list or vector OBJECT, that belongs to a run; otherwise NIL."
+  "Return an object of a run: OBJECT, or an element of the list or vector OBJECT; or NIL."
   (let ((seen (make-hash-table :test 'eq)))
     (labels ((look (object)
                (typecase object
