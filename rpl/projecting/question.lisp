@@ -29,7 +29,7 @@ rollout, ENDED and RESULT say how the branch or plan on trial has ended."
   (getf (question-options question) key))
 
 (defmethod awaited-text ((question question))
-  (format nil "what ~:[may become of ~A~;is the best of ~A branches~]"
+  (format nil "~:[a projection of ~A~;the best of ~A branches~]"
           (question-branches question)
           (if (question-branches question)
               (length (question-branches question))
