@@ -46,7 +46,7 @@ FUNCTION are signalled after the replay."
                       +most-frames+))))
 
 (defun write-frame (canvas index count seconds function)
-  "Write frame INDEX of COUNT, in an animation of SECONDS, as an SVG group that FUNCTION draws."
+  "Write an SVG group that FUNCTION draws: frame INDEX of COUNT, in an animation of SECONDS."
   (write-svg canvas "<g" (if (zerop index) "" " visibility=\"hidden\"") ">
 <animate attributeName=\"visibility\" calcMode=\"discrete\" dur=\"" seconds
              "s\" repeatCount=\"indefinite\" values=\"")
@@ -112,16 +112,16 @@ WRONG-ARGUMENT for OPERATOR if UNTIL is not a tick of JOURNAL."
                        (layers *picture-layers*) (in-color t) scale title part anyway)
   "Replay a run and save it in FILE as a film. Return the truename of FILE, or with SERIES a list of
 truenames. JOURNAL is a journal, the name of a journal file, or NIL for the journal of the current
-simulation. The film has a frame for the beginning and for every EVERY ticks up to the tick UNTIL,
-by default the end. By default EVERY is chosen so that the film has at most 600 frames. RATE is the
-number of frames per second.
+simulation. The film has a frame for the beginning and one after every EVERY ticks, up to the tick
+UNTIL, by default the end. By default EVERY is chosen so that the film has at most 600 frames. RATE
+is the number of frames per second.
 
 The name of FILE chooses the kind of film:
 - .html: a page that plays, stops and searches the run in any browser, without a network. The page
   lists what robots grasped, released and stowed; commands that failed; plans and parts of plans
-  that failed or were ended; errors in your code; and MOMENTS of your own, each a moment or a list
-  of a tick and a string. KINDS chooses the kinds of listed events: see SAVE-RUN-PICTURE. The page
-  fits its window, so a SCALE larger than the map needs has no effect.
+  that failed or were ended; errors in your code; and your own MOMENTS, a list of moments or of
+  lists (tick string). KINDS chooses the kinds of listed events: see SAVE-RUN-PICTURE. The page fits
+  its window, so a SCALE larger than the map needs has no effect.
 - .svg: an animated picture of the world. The file is about ten times as large as an .html file.
 - .svg or .png with SERIES: numbered pictures of DISPLAY. If FILE is run.png, the first picture is
   run-0001.png.
@@ -131,7 +131,7 @@ arguments are those of SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the erro
   (let* ((kind (if series
                    (picture-kind 'save-animation file)
                    (picture-kind 'save-animation file '(:html :svg)
-                                 ".html or .svg; with :series t in .svg or .png")))
+                                 ".html or .svg; with :series t, in .svg or .png")))
          (journal (resolve-journal journal 'save-animation))
          (moments (checked-moments 'save-animation moments
                                    (checked-end-tick 'save-animation journal until)))
@@ -189,7 +189,7 @@ was recorded. Signals the errors of REPLAY."
   (check-map-options 'save-animation :title title :layers layers :scale scale))
 
 (defun file-names-text (files)
-  "Return a text with the first and last names of FILES, a list of numbered files, the last first."
+  "FILES is a list of files, the last one first. Return a text with the first and the last name."
   (format nil "~A~@[ to ~A~]" (file-name-text (first (last files)))
           (and (rest files) (name-in-directory (first files)))))
 

@@ -16,8 +16,7 @@
 
 (define-record (gcontext (:constructor create-gcontext
                              (&key foreground background line-width line-style dashes)
-                             "Return a new graphics context. By default it draws solid black lines,
-one pixel wide.")
+                             "Return a new graphics context, for solid black lines by default.")
                          (:copier copy-gcontext))
   "A graphics context: colours, line width, line style and dashes for drawing."
   (foreground #x000000 color
@@ -135,8 +134,7 @@ over the angle EXTENT, both in radians, counterclockwise from the right. If FILL
 of pie. The outline of a whole circle stays within the box, for any width of the line."))
 
 (defgeneric paint-path (canvas gcontext points fill-p)
-  (:documentation "Paint a line through POINTS, a sequence x y .... If FILL-P, paint the filled
-polygon instead."))
+  (:documentation "Paint a line through POINTS, a sequence x y ..., or a polygon if FILL-P."))
 
 (defgeneric paint-segments (canvas gcontext segments)
   (:documentation "Paint SEGMENTS, a sequence x1 y1 x2 y2 ..., as separate lines."))
@@ -165,7 +163,7 @@ polygon instead."))
   (:method (subject) (princ-to-string subject)))
 
 (defgeneric call-with-subject (function canvas subject)
-  (:documentation "Call FUNCTION, which paints SUBJECT. A canvas may let the user point at it.")
+  (:documentation "Call FUNCTION, which paints SUBJECT. A canvas may let users point at SUBJECT.")
   (:method (function canvas subject)
     (declare (ignore canvas subject))
     (funcall function)))

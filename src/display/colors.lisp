@@ -116,12 +116,12 @@ attribute. Return NIL if NAME is not a colour."
     (/ (max a b) (min a b))))
 
 (defun black-or-white-on (color)
-  "Return black or white, whichever has the higher contrast ratio to COLOR. It is at least 4.5."
+  "Return black or white: the one with the higher contrast ratio to COLOR, which is at least 4.5."
   (if (< (color-contrast white* color) (color-contrast black* color)) black* white*))
 
 (defun tint-grey (grey hue fraction)
   "Return the colour GREY mixed with FRACTION, from 0 to 1, of the colour HUE. The result has the
-luminance of GREY, so it is printed in the same grey."
+luminance of GREY, so both look the same in a print without colours."
   (let* ((light (luminance grey)) (strength (luminance hue)))
     (color-of-primaries
      (loop for primary in (primaries hue)
@@ -150,11 +150,11 @@ luminance of GREY, so it is printed in the same grey."
 (:across Y), (:down X), (:rising), (:falling), (:stroke X1 Y1 X2 Y2), (:box X Y WIDTH HEIGHT).")
 
 (defun tile-edges (low high tile)
-  "Return where the tiles of size TILE begin that overlap the range from LOW to HIGH."
+  "Return the coordinates where tiles begin. The tiles have the size TILE and cover LOW to HIGH."
   (loop for edge from (* tile (floor low tile)) below high by tile collect edge))
 
 (defun tile-levels (low high tile part)
-  "Return the coordinates from LOW to HIGH at fraction PART, 0 to 1, of a tile of size TILE."
+  "Return the coordinate at the fraction PART of each tile of size TILE, from LOW to below HIGH."
   (loop for edge in (tile-edges low high tile)
         for level = (+ edge (* part tile))
         when (and (<= low level) (< level high)) collect level))

@@ -51,7 +51,7 @@
 robot, so that their widths are in proportion.")
 
 (defun size-unit (robot)
-  "Return the width in pixels of a thing of size 1 with which the largest thing fits all displays."
+  "Return the width in pixels of a thing of size 1, chosen so that the largest thing fits."
   (let ((largest (reduce #'max (mapcar #'thing-image-size (displayed-thing-images robot))
                          :initial-value 0)))
     (if (< (* largest +greatest-size-unit+) +object-width+)
@@ -59,8 +59,8 @@ robot, so that their widths are in proportion.")
         (/ +object-width+ largest))))
 
 (defun thing-width (image)
-  "Return the width of the thing of IMAGE in a display, in pixels. It is in proportion to the size
-of the thing, but at least 2."
+  "Return the width of the thing of IMAGE in a display, in pixels. The width is in proportion to the
+size of the thing, but at least 2."
   (max 2 (* *size-unit* (thing-image-size image))))
 
 (defun draw-hollow (canvas x y width)
@@ -195,7 +195,7 @@ display takes no new view, so that it shows only what the robot knows."
       "View: none requested yet"))
 
 (defun draw-tracked-object (canvas track x y width)
-  "Write type and distance of TRACK, the image of a tracked designator, and draw what it denotes."
+  "Write the type and distance of TRACK, a tracked designator's image. Draw what it denotes."
   (let ((text (format nil "~(~A~) ~,1F " (designator-image-type track)
                       (designator-image-distance track))))
     (draw-line-of-text canvas x y width text)
@@ -249,8 +249,8 @@ display takes no new view, so that it shows only what the robot knows."
       (:cameras "Cameras" draw-camera robot-image-cameras)
       (:hands "Hands" draw-hand robot-image-hands) (:bins "Storage bins" draw-bin robot-image-bins))
   :test #'cl:equal
-  :documentation "The displays except that of the world: lists (name title function [parts]).
-FUNCTION draws the display. PARTS, if given, returns parts of the robot; FUNCTION then draws one.")
+  :documentation "The displays except the world: lists (name title function [parts]). FUNCTION draws
+the display or, if PARTS is given, one of the parts of the robot that PARTS returns.")
 
 ;; As reading 27 says.
 (define-constant +displays+ (cons :world (mapcar #'first +details+))
@@ -266,7 +266,7 @@ cameras, hands and storage bins.")
   (if (eq :world display) "World" (second (assoc display +details+))))
 
 (defun draw-robot-display (canvas display robot width)
-  "Draw DISPLAY, any except the world, of ROBOT, WIDTH pixels wide. Return its height in pixels."
+  "DISPLAY is not the world. Draw it for ROBOT, WIDTH pixels wide. Return its height in pixels."
   (destructuring-bind (draw &optional parts) (cddr (assoc display +details+))
     (let ((*size-unit* (size-unit robot)))
       (if parts

@@ -33,8 +33,8 @@
 
 (defmacro define-drawing (name (canvas gcontext numbers . rest) documentation &body body)
   "Define the drawing function NAME, which checks its arguments. NUMBERS is a list of required
-arguments that must be numbers. Or it is (SEQUENCE MULTIPLE): SEQUENCE is an argument with a
-multiple of MULTIPLE numbers."
+arguments that must be numbers. Or NUMBERS is (SEQUENCE MULTIPLE): then the argument SEQUENCE must
+have numbers as elements, and its length must be a multiple of MULTIPLE."
   (let ((many (integerp (second numbers))))
     (multiple-value-bind (forms declarations) (parse-body body)
       `(defun ,name (,canvas ,gcontext ,@(if many (list (first numbers)) numbers) ,@rest)
@@ -74,7 +74,7 @@ extends over ANGLE2, in radians, counterclockwise from three o'clock. If FILL-P,
                       (list x1 y1 x2 y2))))
 
 (defun absolute-points (points)
-  "Return a list of the absolute coordinates of POINTS, x y ..., each relative to the point before."
+  "Each of POINTS, x y ..., is relative to the point before. Return a list of absolute coordinates."
   (loop with x = 0 and y = 0
         for (dx dy) on (coerce points 'list) by #'cddr
         collect (incf x dx)
@@ -195,8 +195,8 @@ right. The default method ignores SIZE, UPWARD-P and BOLD-P, because a canvas ha
                     y string))))
 
 (defgeneric character-width (canvas size)
-  (:documentation "Return the width in pixels that layouts assume for a character that DRAW-WORDS
-draws on CANVAS in a font SIZE pixels high. The default method returns +CHARACTER-WIDTH+.")
+  (:documentation "Return the width in pixels that layouts reserve for a character of DRAW-WORDS on
+CANVAS, in a font SIZE pixels high. The default method returns +CHARACTER-WIDTH+.")
   (:method (canvas size)
     (declare (ignore canvas size))
     +character-width+))
@@ -211,8 +211,7 @@ draws on CANVAS in a font SIZE pixels high. The default method returns +CHARACTE
   nil)
 
 (defgeneric call-with-opacity (function canvas opacity)
-  (:documentation "Call FUNCTION. What it paints on CANVAS has OPACITY, from 0 to 1. The default
-method ignores OPACITY.")
+  (:documentation "Call FUNCTION. What it paints on CANVAS has OPACITY, from 0 to 1, if possible.")
   (:method (function canvas opacity)
     (declare (ignore canvas opacity))
     (funcall function)))

@@ -16,7 +16,7 @@
 
 (defstruct (reel (:constructor make-reel ()) (:copier nil))
   "The frames of a film, as lines of SVG. NUMBERS is a table from the text of each line to its
-number. FRAMES, the latest first, are vectors of numbers of lines."
+number. FRAMES, the latest first, are vectors of line numbers."
   (numbers (make-hash-table :test 'cl:equal) :type hash-table :read-only t)
   (frames '() :type list))
 
@@ -38,7 +38,7 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
     lines))
 
 (defun changes-in (frame before)
-  "Return index number ... for the lines in which FRAME differs from BEFORE, which is as long."
+  "FRAME and BEFORE have the same length. Return index number ... of the lines that differ."
   (loop for number across frame
         for old across before
         for place from 0
@@ -60,8 +60,8 @@ number. FRAMES, the latest first, are vectors of numbers of lines."
   (write-json-string text out :in-page t))
 
 (defun write-frames (frames out)
-  "Write FRAMES to OUT in order. A frame that has as many lines as the frame before is written as
-the differences; other frames are written whole."
+  "Write FRAMES to OUT in order. A frame with as many lines as the previous frame is written as the
+differences from it. Other frames are written whole."
   (let ((before nil))
     (flet ((write-frame (frame out)
              (cond ((and before (= (length frame) (length before)))
@@ -131,7 +131,7 @@ list items. If SEVERAL-P, name the robots of MOMENTS."
           (string= "" legend) legend))
 
 (defun write-film (out title picture last-picture legend reel ticks rate moments several-p)
-  "Write to OUT the page of a film with TITLE. PICTURE is an SVG document of the first frame. Other
+  "Write the page of a film with TITLE to OUT. PICTURE is an SVG document of the first frame. Other
 frames replace its group `movers'. LAST-PICTURE, an SVG document of the last frame, is for browsers
 without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MOMENTS."
   (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%")
@@ -158,7 +158,7 @@ without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MO
       (with-canvas (canvas :scale scale) (draw-movers canvas snapshot layers)))))
 
 (defun whole-frame-svg (snapshot movers layers in-color scale)
-  "Return SVG for the map of SNAPSHOT with LAYERS, and above it MOVERS in a group `movers'."
+  "Return SVG with the map of SNAPSHOT, LAYERS, and above them the SVG MOVERS in a group `movers'."
   (with-output-to-string (out)
     (with-svg (canvas out :color-p in-color)
       (with-canvas (canvas :scale scale)
@@ -174,8 +174,8 @@ without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MO
           (length ticks) (first ticks) (and (rest ticks) (first (last ticks)))))
 
 (defstruct (film-contents (:constructor make-film-contents (opening)) (:copier nil))
-  "What a film shows, for its legend. OPENING is its first snapshot. THINGS is a table from things
-to their images. ROBOTS are images of robots. LINES are legend entries of lines, the latest first."
+  "The contents of a film, for its legend. OPENING is its first snapshot. THINGS is a table from
+things to images. ROBOTS are images of robots. LINES are entries for lines, the latest first."
   (opening nil :type snapshot :read-only t)
   (robots '() :type list)
   (things (make-hash-table :test #'eq) :type hash-table :read-only t)

@@ -49,8 +49,8 @@ VARIABLES are bound to the x, y, tick and placements of the point."
           +trail-step+)))
 
 (defun add-position-of-placement (robot tick points)
-  "Return POINTS, those of a trail. If ROBOT has been put elsewhere since the newest point, add the
-place where ROBOT was put, because ROBOT may have moved away from there by TICK."
+  "Return POINTS, the points of a trail. If ROBOT was placed elsewhere since the newest point, add
+the position where ROBOT was placed, because ROBOT may have moved away by TICK."
   (if (and points
            (/= (the fixnum (robot-placements robot)) (the fixnum (fourth points)))
            (moved-p (list (robot-x robot) (robot-y robot)) (robot-put-x robot) (robot-put-y robot)))
@@ -62,7 +62,7 @@ place where ROBOT was put, because ROBOT may have moved away from there by TICK.
          (add-position-of-placement robot tick points)))
 
 (defun count-new-points (points before)
-  "Return the number of points in POINTS, a trail, before its tail BEFORE."
+  "BEFORE is a tail of POINTS, a trail. Return the number of points before this tail."
   (loop for rest on points by #'cddddr until (eq rest before) count t))
 
 (defun extended-trail (trail robot tick)
@@ -104,8 +104,8 @@ a straight line to the present position of ROBOT."
 
 (defun ray-ends (map opaque-p x y first step count)
   "Return the end points of COUNT rays of sight from X, Y in MAP, as a list x y .... The first ray
-has the direction FIRST, and each next one is STEP radians further. OPAQUE-P is a function of the
-index of a cell that returns true if the cell ends a ray."
+has the direction FIRST, and each next ray is STEP radians further. OPAQUE-P, a function of a cell's
+index, returns true if the cell ends a ray."
   (loop for ray below count
         for angle = (+ first (* ray step))
         for dx = (cosine angle) and dy = (sine angle)

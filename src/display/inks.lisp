@@ -38,7 +38,7 @@ way. NIL means a solid line.")
   (elt sequence (mod position (length sequence))))
 
 (defun nth-ink (position)
-  "Return the colour of the robot or way at POSITION in a list of several."
+  "Return the colour of the robot or way at POSITION in a list of robots or ways."
   (nth-cyclic position +line-inks+))
 
 (defun nth-dashes (position)
@@ -157,8 +157,8 @@ the last texture, they start again.")
   (texture :plain :type keyword :read-only t))
 
 (defun choose-texture (name taken)
-  "Return a texture for the substance called NAME in a map: its usual texture or, if TAKEN contains
-that one, the next texture that is free. TAKEN are the textures of the map's other substances."
+  "Return a texture for the substance called NAME in a map: its usual texture, or the next free
+texture if TAKEN contains the usual one. TAKEN are the textures of the map's other substances."
   (let* ((first (or (substance-position name) 0))
          (all (loop for position from first repeat (length +wall-textures+)
                     collect (nth-cyclic position +wall-textures+))))

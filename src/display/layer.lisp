@@ -9,18 +9,18 @@
 ;;; text maps. The layers themselves are in layers.lisp. A layer is drawn at a depth:
 ;;;
 ;;;   :UNDER-WALLS, :ON-WALLS     on the map, which never changes: (draw canvas map window)
-;;;   :WAYS, :THINGS              of the whole snapshot, below robots, below things:
-;;;                               (draw canvas shown)
-;;;   :ROBOTS, :LABELS            of each robot, below and above things:
+;;;   :WAYS, :THINGS              of the snapshot, below robots or things: (draw canvas shown)
+;;;   :ROBOTS, :LABELS            of each robot, below or above things:
 ;;;                               (draw canvas shown robot snapshot)
-;;;   :LOOKS, :CAMERAS            of each camera, below :ROBOTS; looks lie lower: the same
+;;;   :LOOKS, :CAMERAS            of each camera, below :ROBOTS; :LOOKS below :CAMERAS:
+;;;                               (draw canvas shown robot snapshot)
 ;;;   :NAMES, :MARGIN             names.lisp and margins.lisp draw these
 ;;;
 ;;; The function :SHOWN gets a snapshot, or the image of a robot or camera. It returns what to draw,
 ;;; the argument SHOWN, or NIL. The legend calls it too, and so lists exactly what is drawn.
 
 (defstruct (layer (:copier nil) (:conc-name %layer-))
-  "A layer of pictures: what they can show besides walls, things and robots. See DEFINE-LAYER."
+  "A layer: something that pictures can show besides walls, things and robots. See DEFINE-LAYER."
   (name nil :type keyword) (title "" :type string) (sentence "" :type string)
   (default-p nil) (depth :robots :type keyword) (shown nil) (draw nil) (note nil) (boxes nil)
   (ink nil) (dashes '() :type list) (width 1) (legend nil) (entries nil) (last-p nil)
@@ -38,9 +38,9 @@
 (defun document-layers ()
   (setf (documentation '*picture-layers* 'variable)
         (addition-text
-         (format nil "A list of the layers that pictures show besides walls, things and robots, ~
-                      unless :LAYERS is given: some of the following, by default those with a ~
-                      star.~2%~:{  ~S~:[~; *~]~@[ (~S in text maps)~] -- ~A: ~A~%~}~%~
+         (format nil "The layers that pictures show besides walls, things and robots unless ~
+                      :LAYERS is given: a list of some of the following names. The default is ~
+                      those with a star.~2%~:{  ~S~:[~; *~]~@[ (~S in text maps)~] -- ~A: ~A~%~}~%~
                       Rays and trails are recorded only after KEEP-HISTORY."
                  (loop for layer in *layers*
                        collect (list (%layer-name layer) (%layer-default-p layer)
@@ -48,7 +48,7 @@
                                      (%layer-sentence layer)))))))
 
 (defun add-layer (layer)
-  "Add LAYER to *LAYERS*, at the end or in place of a layer of this name. Return the name of LAYER."
+  "Add LAYER at the end of *LAYERS*, or in place of the layer of its name. Return LAYER's name."
   (let* ((name (%layer-name layer)) (old (find name *layers* :key #'%layer-name)))
     (cond (old (setf *layers* (substitute layer old *layers*)))
           (t (setf *layers* (append *layers* (list layer)))

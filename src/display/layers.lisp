@@ -17,8 +17,8 @@ IMAGE. SHOWN is what the layer shows. IMAGE is a snapshot or the image of a robo
         when shown collect (list* layer shown more)))
 
 (defun shown-layers-below-things (snapshot layers)
-  "Return what LAYERS show of SNAPSHOT below things, the lowest layer first, as a list of the same
-form as that of SHOWN-LAYERS-AT-DEPTH."
+  "Return what LAYERS show of SNAPSHOT below things, in the form of SHOWN-LAYERS-AT-DEPTH. The
+lowest layer is first."
   (append (shown-layers-at-depth :ways layers snapshot)
           (loop for robot in (snapshot-robots snapshot)
                 append (loop for camera in (robot-image-cameras robot)
@@ -39,7 +39,7 @@ form as that of SHOWN-LAYERS-AT-DEPTH."
         do (apply (%layer-draw layer) canvas arguments)))
 
 (defconstant +robot-overhang+ 8
-  "The least margin in pixels, because robots are drawn this far beyond the edges of the map.")
+  "How far, in pixels, robots are drawn beyond the edges of the map: the least margin.")
 
 (defun draw-movers (canvas snapshot layers)
   "Draw SNAPSHOT on CANVAS without its terrain: things, robots, and what LAYERS show of them."

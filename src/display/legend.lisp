@@ -11,7 +11,7 @@
 
 (defstruct (entry (:constructor make-entry (text sample &key whole (width +sample-width+)))
                   (:copier nil))
-  "A legend entry: TEXT beside a sample WIDTH pixels wide. WHOLE is TEXT before abridging, or NIL."
+  "A legend entry: TEXT beside a sample WIDTH pixels wide. WHOLE is NIL, or the unabridged TEXT."
   (width +sample-width+ :type real :read-only t)
   (text "" :type string :read-only t)
   (sample (constantly nil) :type function :read-only t)
@@ -22,7 +22,7 @@
   `(make-entry ,text (lambda (,canvas ,x ,y) (declare (ignorable ,canvas ,x ,y)) ,@body)))
 
 (defun named-entry (name sample &optional (more "") (width +sample-width+))
-  "Return a legend entry. Its text is the string NAME, abridged if NAME is long, and then the string
+  "Return a legend entry. Its text is the string NAME, abridged if long, followed by the string
 MORE. SAMPLE is a function that draws the sample, WIDTH pixels wide."
   (let ((text (short-name name)))
     (make-entry (concatenate 'string text more) sample
@@ -44,7 +44,7 @@ MORE-AND-WIDTH are optional: a text to append to NAME, and the width of the samp
             (push (list value object) groups))))))
 
 (defconstant +longest-names+ 32
-  "The largest number of characters that the names beside one sample have together.")
+  "The largest total number of characters of the names beside one sample.")
 
 (defun join-names (texts)
   "Return a text that joins as many of TEXTS as +LONGEST-NAMES+ allows, and counts the others."
@@ -161,7 +161,7 @@ number and the range of its parameters. The lists are sorted by number."
 ;;; Things: each look once, with the names of all things that look so.
 
 (defun sample-half-width (image)
-  "Return half the width, in pixels, of the legend's sample of the thing of IMAGE. The sample is as
+  "Return half the width, in pixels, of the legend's sample for the thing of IMAGE. The sample is as
 wide as the thing on the map if a line of the legend has room for such a sample."
   (let ((graphics-scale* (min graphics-scale* (floor (- +line-height+ 2) +greatest-thing-width+))))
     (thing-half-width image)))

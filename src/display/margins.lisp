@@ -30,12 +30,12 @@ MISUSE if GRAPHICS-SCALE* is not a valid scale."
 (defconstant +least-scale+ 4 "The least scale if no scale is given, in pixels per cell.")
 (defconstant +greatest-scale+ 40 "The greatest scale if no scale is given, in pixels per cell.")
 (defconstant +greatest-unmagnified-scale+ 20
-  "A larger scale, in pixels per cell, also magnifies text, unless that scale suits the map.")
+  "Scales above this number of pixels per cell also magnify text, unless they suit the map.")
 
 (defstruct (arrangement (:copier nil))
   "The layout of a picture, in pixels. LEFT, TOP, RIGHT and BOTTOM are the map's margins, WIDTH and
 HEIGHT the size of the picture. COLUMNS are the legend's columns, lists of entries. The legend is
-below the map if BELOW-P, else LEGEND-LEFT from its left. TITLE and SUBTITLE are lists of lines."
+below the map if BELOW-P, else at x LEGEND-LEFT. TITLE and SUBTITLE are lists of lines."
   (left 0) (top 0) (right 0) (bottom 0) (columns '()) (below-p nil) (legend-left 0)
   (title '()) (subtitle '()) (width 0) (height 0))
 
@@ -170,7 +170,7 @@ PER-CHARACTER pixels wide."
   (ceiling (* per-character (reduce #'max lines :key #'length :initial-value 0))))
 
 (defun add-title (arrangement title subtitle per-pixel)
-  "Add TITLE and, below it, SUBTITLE, a string or NIL, to ARRANGEMENT. The width of a character is
+  "Add TITLE to ARRANGEMENT, and below it SUBTITLE, a string or NIL. The width of a character is
 PER-PIXEL times the height of its font."
   (let* ((room (max +least-title-width+ (arrangement-width arrangement)))
          (room (- room (arrangement-left arrangement) (arrangement-right arrangement)))
@@ -194,7 +194,7 @@ PER-PIXEL times the height of its font."
 ;;; The parts. The origin is that of the map.
 
 (defun robots-and-map-title (robots map)
-  "Return a title for a picture with ROBOTS, a list of their names as drawn, in the map named MAP."
+  "Return a title for a picture. ROBOTS are the names of its robots as drawn, MAP names its map."
   (format nil "~@[~A in ~]~A" (and robots (join-names robots)) (drawn-name map)))
 
 (defun default-picture-title (snapshot)

@@ -43,7 +43,7 @@ the contents of each bin. FAILURE is the last failure of a command."
                     (robot-failure robot)))
 
 (defun initial-observation (new)
-  "Return an observation with empty hands, to be compared with NEW, the first one of a run."
+  "Return an observation with empty hands, to compare with NEW, the first observation of a run."
   (make-observation (mapcar (constantly nil) (observation-held new)) (observation-stowed new) nil))
 
 (defun changes-of-hands (old new)
@@ -133,7 +133,6 @@ of them are moments, or lists (tick text [robot]), up to the tick END."
       (remove-if-not (lambda (moment) (member (moment-kind moment) (cons :note kinds))) moments)))
 
 (defun sort-moments (moments)
-  "Return MOMENTS sorted by tick."
   (stable-sort (copy-list moments) #'< :key #'moment-tick))
 
 (defparameter *expected-error-codes* '(:robot-blocked :not-tracking :lost-track :track-lost)

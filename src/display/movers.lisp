@@ -116,7 +116,7 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
 cells are large, so that the ring fits into a map of one cell."
   (max 6 (min (* 7/8 graphics-scale*) (+ 10 (* 1/4 graphics-scale*)))))
 
-(defconstant +ring-distance+ 4 "The distance between the rings of robots on one spot, in pixels.")
+(defconstant +ring-distance+ 4 "The distance between rings of robots at one place, in pixels.")
 
 (defun rings-coincide-p (image other)
   "True if the robots of IMAGE and OTHER are so close that their rings would look like one ring."
@@ -126,7 +126,7 @@ cells are large, so that the ring fits into a map of one cell."
 
 (defun ring-radius (image robots)
   "Return the radius of the ring of IMAGE, one of ROBOTS, in pixels. The ring is around the rings of
-earlier ROBOTS on the same spot."
+earlier ROBOTS at the same place."
   (+ (robot-radius)
      (* +ring-distance+ (count-coinciding-rings image (ldiff robots (member image robots))))))
 
@@ -148,7 +148,7 @@ earlier ROBOTS on the same spot."
                 :fill-p fill-p)))
 
 (defun hollow-arrowhead-p (position)
-  "True if the arrowhead of the robot at POSITION in its world's list of robots is drawn hollow."
+  "True if the robot at POSITION in its world's list of robots has a hollow arrowhead."
   (and (not in-color*) (oddp (floor position (length +line-dashes+)))))
 
 (defun camera-lines (image radius)
@@ -220,8 +220,8 @@ robot in the list of robots of its world."
 ;;; Rays, coloured by their readings.
 
 (defun reading-color-index (map reading)
-  "Return the index in +RAY-INKS+ of the colour for READING, which is scaled between the least and
-the greatest substance parameter of MAP."
+  "Return the index in +RAY-INKS+ of the colour for READING. The first colour is for the least
+parameter of a substance in MAP, the last colour for the greatest."
   (let* ((least (map-least-parameter map)) (greatest (map-greatest-parameter map))
          (count (length +ray-inks+)))
     (if (< least greatest)
@@ -251,8 +251,8 @@ the greatest substance parameter of MAP."
 ;;; Beliefs.
 
 (defun believed-place (robot designator)
-  "Return the point (x y), in metres, where ROBOT believes the object of DESIGNATOR to be, relative
-to the real position of ROBOT."
+  "Return the point (x y) on the map, in metres, where ROBOT believes the object of DESIGNATOR to
+be. The point lies in the believed direction and distance from the real position of ROBOT."
   (point-at-distance (robot-image-x robot) (robot-image-y robot)
                      (+ (robot-image-angle robot) (designator-image-angle designator))
                      (designator-image-distance designator)))

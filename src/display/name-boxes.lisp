@@ -7,11 +7,11 @@
 
 (defconstant +square-side+ 32 "The width of a square of a box index, in pixels.")
 (defconstant +most-squares+ 1000
-  "A box that overlaps more squares than this is not listed in each square.")
+  "A box that overlaps more squares than this is listed as a large box.")
 
 (defstruct (box-index (:constructor make-box-index ()) (:copier nil))
   "An index of boxes. SQUARES is a table from the number of a square to the entries (box . item)
-whose box overlaps the square. LARGE lists the entries whose box overlaps very many squares."
+whose box overlaps the square. LARGE lists the entries of large boxes."
   (squares (make-hash-table) :type hash-table :read-only t)
   (large '() :type list))
 
@@ -73,7 +73,7 @@ around X, Y. ROBOT is the image of a robot, or NIL for a thing."
 (defconstant +name-height+ 11 "The height of the box of a name, in pixels.")
 
 (defun candidate-name-boxes (x y half width)
-  "Return boxes, best first, for a name WIDTH pixels wide beside a spot of HALF pixels around X, Y."
+  "Return boxes, best first, for a name WIDTH pixels wide beside a target, HALF pixels around X, Y."
   (let ((gap (+ half 2)) (high +name-height+))
     (loop for (left top) in (list (list (+ x gap) (- y (/ high 2)))
                                   (list (- x gap width) (- y (/ high 2)))
@@ -96,7 +96,7 @@ around X, Y. ROBOT is the image of a robot, or NIL for a thing."
 
 (defun boxes-beside (x y half width marks)
   "Return boxes like CANDIDATE-NAME-BOXES. If a box of the index MARKS, such as a track's ring,
-overlaps the spot, add boxes beside it. Without a ring, names so far away would be ambiguous."
+overlaps the target, add boxes beside that box. Without it, names as far away would be ambiguous."
   (append (candidate-name-boxes x y half width)
           (and (find-overlapping-item (box-around x y half) marks)
                (candidate-name-boxes x y (max half (+ 2 (track-radius))) width))))
@@ -107,7 +107,7 @@ overlaps the spot, add boxes beside it. Without a ring, names so far away would 
     (and (<= first-x left) (<= first-y top) (<= right last-x) (<= bottom last-y))))
 
 (defun some-cell-under-box-p (map box function)
-  "True if FUNCTION, a function of the index of a cell, returns true for a cell of MAP that BOX
+  "FUNCTION is a function of a cell's index. True if it returns true for a cell of MAP that BOX
 overlaps. BOX must be within MAP."
   (destructuring-bind (left top right bottom) box
     (flet ((cell (pixels limit) (min (floor pixels graphics-scale*) (1- limit))))

@@ -44,8 +44,8 @@ already has lower-case letters."
                      (thing-half-width image)))
 
 (defun thing-label-targets (images)
-  "Return the spots of the things in IMAGES that no other thing hides. IMAGES are in the order of
-drawing, the largest thing first."
+  "Return label targets for the things in IMAGES that no other thing hides. IMAGES are in the order
+of drawing, the largest thing first."
   (let ((piles (make-hash-table :test 'equalp)))
     (dolist (image images) (push image (gethash (pile-key image) piles)))
     (loop for image in images
@@ -53,7 +53,7 @@ drawing, the largest thing first."
           when (eq image top) collect (thing-label-target image (length hidden)))))
 
 (defun label-targets (snapshot)
-  "Return the spots of the robots and things that get names on the map, in order of importance."
+  "Return label targets for the robots and things named on the map, the most important first."
   (append (loop with robots = (snapshot-robots snapshot)
                 for robot in robots collect (robot-label-target robot robots))
           (thing-label-targets (stable-sort (coerce (snapshot-things snapshot) 'list) #'>
@@ -66,8 +66,8 @@ drawing, the largest thing first."
 ;;; line leads to it. The line crosses no other robot if that can be avoided.
 
 (defun names-confusable-p (spot other)
-  "True if the name of SPOT could be taken for the name of OTHER. This is false for spots at the
-same point and for rings around each other, whose names belong together."
+  "True if the name of SPOT could be taken for the name of OTHER. False for targets at the same
+point and for rings around each other, whose names belong together."
   (not (or (eq spot other)
            (and (label-target-robot spot) (label-target-robot other)
                 (rings-coincide-p (label-target-robot spot) (label-target-robot other)))
@@ -96,8 +96,8 @@ same point and for rings around each other, whose names belong together."
      (robot-radius)))
 
 (defconstant +robot-margin+ 6
-  "The least difference in pixels between a name's distances to another robot and to its own.")
-(defconstant +thing-margin+ 3 "The value of +ROBOT-MARGIN+ if one of the two is a thing.")
+  "How much nearer, in pixels, a name must be to its own robot than to another robot.")
+(defconstant +thing-margin+ 3 "Like +ROBOT-MARGIN+, unless both are robots.")
 
 (defun distance-from-label-target (spot box)
   "Return the distance in pixels of BOX from SPOT, a ring or a square: 0 or less for an overlap."
@@ -111,7 +111,7 @@ same point and for rings around each other, whose names belong together."
                  (clamp (clamp y top bottom) (- y half) (+ y half))))))))
 
 (defun unambiguous-name-box-p (spot box rivals)
-  "True if a name in BOX clearly belongs to SPOT, not to RIVALS, spots with confusable names."
+  "True if a name in BOX clearly belongs to SPOT, not to RIVALS, targets with confusable names."
   (loop with own = (distance-from-label-target spot box)
         for rival in rivals
         for robots-p = (and (label-target-robot spot) (label-target-robot rival))
@@ -194,7 +194,7 @@ TAKEN except the box of SPOT."
 
 (defun leader-box (snapshot layers spot width taken rivals)
   "Return the box at the end of a line where the name of SPOT, WIDTH pixels wide, hides least, or
-NIL. The line may cross something only if SPOT is a robot and every line does."
+NIL. If every line crosses something, the value is NIL for a thing, but a box for a robot."
   (let ((boxes (leader-boxes spot width)))
     (flet ((best (own-p)
              (best-box snapshot layers boxes taken :anywhere-p t :own-p own-p)))
@@ -222,7 +222,6 @@ NIL. The line may cross something only if SPOT is a robot and every line does."
                                         1))))
 
 (defun write-name (canvas name box)
-  "Write NAME in BOX, on a white background."
   (destructuring-bind (left top right bottom) box
     (fill-with-white canvas left top (- right left) (- bottom top))
     (with-color black*
@@ -231,11 +230,11 @@ NIL. The line may cross something only if SPOT is a robot and every line does."
 ;;; From here on SPOTS is a box index.
 
 (defconstant +name-confusion-margin+ 100
-  "The distance from a name up to which spots with confusable names are searched, in pixels.")
+  "Confusable names are searched up to this distance from a name, in pixels.")
 
 (defun name-confusion-distance (spot width)
-  "Return the distance from SPOT up to which spots with confusable names are searched, in pixels.
-The name of SPOT is WIDTH pixels wide."
+  "Return the distance from SPOT, in pixels, up to which confusable names are searched. The name of
+SPOT is WIDTH pixels wide."
   (+ width (label-target-half spot) +name-confusion-margin+))
 
 (defun name-box-beside-label-target (snapshot layers spot width taken marks spots)
@@ -256,7 +255,7 @@ least. Return NIL if there is no such box."
 
 (defun name-box (snapshot layers spot width taken marks spots robots)
   "Return two values: the box, WIDTH pixels wide, for the name of SPOT, or NIL; and true if a line
-must lead to the box. ROBOTS is a list of the spots of robots in the index SPOTS."
+must lead to the box. ROBOTS is a list of those targets in the index SPOTS that are robots."
   (let ((near (name-box-beside-label-target snapshot layers spot width taken marks spots)))
     (if near
         (values near nil)
@@ -267,8 +266,8 @@ must lead to the box. ROBOTS is a list of the spots of robots in the index SPOTS
 
 (defun draw-names (canvas snapshot layers &optional boxes)
   "Write the names of robots and things where they overlap neither BOXES nor what LAYERS draw. If
-there is no room beside a robot, its name is at the end of a line. The same holds for a thing that
-overlaps or touches another spot."
+there is no room beside a robot, or beside a thing that overlaps or touches another target, the name
+is at the end of a line."
   (let* ((spots (label-targets snapshot)) (robots (snapshot-robots snapshot))
          (per-character (character-width canvas +name-size+))
          (marks (append boxes (layer-mark-boxes snapshot layers)))

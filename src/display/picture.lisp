@@ -43,10 +43,10 @@ to show, by default the whole map. If IN-COLOR is NIL, the picture is black and 
 
 SCALE is the number of pixels per cell, from 1 to 256. The default is GRAPHICS-SCALE* if you have
 set it to a value other than 8, else the scale that suits the map. That scale is from 4 to 40. With
-it, the picture without its legend is at most 900 x 700 pixels large, unless even 4 is too much. If
-SCALE is larger than the scale that suits the map, and larger than 20, text and lines grow too. In a
-paper, text is readable if the picture is at most 400 pixels wide for a column of 84 mm, and at most
-820 pixels wide for a page of 174 mm.
+it, the picture without its legend is at most 900 x 700 pixels large, unless even the scale 4 makes
+it larger. If SCALE is larger than the scale that suits the map, and larger than 20, text and lines
+grow too. In a paper, text is readable if the picture is at most 400 pixels wide for a column of 84
+mm, and at most 820 pixels wide for a page of 174 mm.
 
 Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (check-picture 'svg-picture robot display layers scale title)
@@ -87,7 +87,7 @@ OUT. FILE is the name of the file for messages."
 
 (defun picture-kind (operator file &optional (kinds '(:svg :png)) (endings ".svg or .png"))
   "Return the element of KINDS that is the type of the file name FILE. Signals WRONG-ARGUMENT for
-OPERATOR if FILE has another type or cannot be written. The message lists ENDINGS, a text of types."
+OPERATOR if FILE has another type or cannot be written. ENDINGS names the types in the message."
   (flet ((reject (expected) (reject-argument operator 'file file expected)))
     (unless (typep file '(or string pathname)) (reject "the name of a file"))
     (when (wildcard-name-p file)
@@ -181,7 +181,7 @@ those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is miss
                             (draw-way-end canvas x y black*))))))
 
 (defun snapshot-of-map (map)
-  "Return a snapshot of the current world if its map is MAP, else of MAP without robots and things."
+  "Return a snapshot of the current world if MAP is its map; if not, of MAP alone."
   (let ((simulation *simulation*))
     (if (and simulation (eq map (world-map (simulation-world simulation))))
         (asking (simulation) (take-snapshot (simulation-world simulation)))
@@ -198,12 +198,12 @@ those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is miss
 (addition save-way-picture)
 (define-with-keywords save-way-picture
     (map ways file &key title (layers *picture-layers*) (in-color t) scale)
-  "Save a picture of MAP, a map or the name of a map, with WAYS, in FILE, replacing an older file.
-WAYS is a list of ways. Each way is a list of PT objects or of lists (x y), such as FIND-WAY
-returns. Return the truename of FILE. If the current simulation is in MAP, the picture also has the
-things and robots of the simulation. TITLE, a string, is the title of the picture. FILE and the
-other arguments are those of SAVE-PICTURE. Signals WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE if
-rsvg-convert is needed but not installed."
+  "Save a picture of MAP with WAYS in FILE, replacing an older file. MAP is a map or its name. WAYS
+is a list of ways. Each way is a list of PT objects or of lists (x y), such as FIND-WAY returns.
+Return the truename of FILE. If MAP is the map of the current simulation, the picture also shows its
+things and robots. TITLE, a string, is the title of the picture. FILE and the other arguments are
+those of SAVE-PICTURE. Signals WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE if rsvg-convert is needed
+but not installed."
   (check-ways ways)
   (check-map-options 'save-way-picture :title title :layers layers :scale scale)
   (let* ((map (find-map map)) (kind (picture-kind 'save-way-picture file)))

@@ -124,8 +124,8 @@
 
 (defun images-on-floor (world old)
   "Return a vector of the images of the things on the floor of WORLD, sorted by serial number. OLD
-is such a vector of an earlier moment. If nothing has changed, return OLD. Both vectors are sorted,
-so that one pass finds the old image of each thing."
+is the vector of an earlier moment. If nothing has changed, return OLD. Both vectors are sorted, so
+that one pass finds the old image of each thing."
   (declare (type simple-vector old))
   (let ((images '()) (position 0) (count 0) (kept 0))
     (declare (type fixnum position count kept))
@@ -148,7 +148,7 @@ so that one pass finds the old image of each thing."
 ;;; Robots.
 
 (defun image-of-location (location)
-  "Return an image or a string for LOCATION, the container of a part of a robot, or NIL for NIL."
+  "Return an image or a string for LOCATION, the container of a robot's part, or NIL if it is NIL."
   (cond ((null location) nil)
         ((thing-p location) (image-of-thing location))
         (t (location-name location))))
@@ -158,7 +158,7 @@ so that one pass finds the old image of each thing."
         ((place-p denotation) (princ-to-string (place-type-name (place-type denotation))))))
 
 (defun denotation-coordinates (denotation)
-  "Return the coordinates of DENOTATION, a thing or a place, as a list (x y), or NIL for NIL."
+  "Return the coordinates of DENOTATION, a thing or a place, as a list (x y). Return NIL for NIL."
   (cond ((thing-p denotation) (multiple-value-list (thing-position denotation)))
         ((place-p denotation)
          (let ((cell (place-cell denotation)))
@@ -248,7 +248,7 @@ WORLD, is given, unchanged images are reused, which is faster."
   (asking ((robot-simulation robot)) (take-snapshot (robot-world robot))))
 
 (defun snapshot-robot (snapshot name)
-  "Return the image of the robot called NAME in SNAPSHOT, or else of the first robot."
+  "Return the image of the robot called NAME in SNAPSHOT; if there is none, of the first robot."
   (or (find name (snapshot-robots snapshot) :key #'robot-image-name :test #'same-name-p)
       (first (snapshot-robots snapshot))))
 

@@ -27,15 +27,14 @@ most 180. Radians are never reduced (reading 50), so they can be several turns."
     (t (format nil "~(~A~)" value))))
 
 (defun denoted-object-text (image)
-  "Return a text that names what the designator of IMAGE denotes: FALSE for nothing (manual B)."
+  "Return a text that names what the designator of IMAGE denotes, FALSE if nothing (manual B)."
   (let ((denotation (designator-image-denotation image)))
     (cond ((null denotation) "FALSE")
           ((stringp denotation) denotation)
           (t (subject-title denotation)))))
 
 (defgeneric describe-subject (subject stream)
-  (:documentation "Write a description of SUBJECT, an image or a cell, to STREAM, as one or more
-lines.")
+  (:documentation "Write lines to STREAM that describe SUBJECT, an image or a cell.")
   (:method ((image thing-image) stream)
     (format stream "~A ~:[at ~,2F, ~,2F~;~:*~A~]~%" (subject-title image)
             (thing-image-location image) (thing-image-x image) (thing-image-y image))

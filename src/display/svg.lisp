@@ -83,7 +83,6 @@
         (t (write-stroke canvas gcontext))))
 
 (defun write-escaped-text (text stream)
-  "Write TEXT to STREAM with the special characters of SVG escaped."
   (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
 (defun write-text-element-end (canvas gcontext string)
@@ -260,7 +259,7 @@ top right bottom) of what it has drawn."
                                         (zoom 1))
   "Call FUNCTION with a canvas. Then write the drawing to STREAM as an SVG document on white, with
 text in the font family FONT. FUNCTION must return the width and height of the drawing in pixels, as
-two values. The document is ZOOM times as large."
+two values. The document is ZOOM times as large as the drawing."
   (let* ((width 0) (height 0)
          (body (with-output-to-string (scratch)
                  (setf (values width height)

@@ -16,7 +16,7 @@
   "A table of drawing functions that have signalled an error, and of names without functions.")
 
 (defmacro with-broken-graphics-reported (&body body)
-  "Run BODY, which draws a picture for a file. BODY reports broken graphics again."
+  "Run BODY, which draws a picture for a file. Graphics known to be broken are reported again."
   `(let ((*broken-graphics* (make-hash-table :test #'eq))) ,@body))
 
 (defun signal-drawing-timeout ()
@@ -42,7 +42,6 @@ FUNCTION succeeds. Otherwise an error message is queued, and the caller must dra
     (not (gethash function *broken-graphics*))))
 
 (defun draw-crossed-out-box (canvas x y width height)
-  "Draw a crossed-out box in place of graphics that cannot be drawn."
   (with-color (svref red* 9)
     (with-clipping (canvas x y width height)
       (draw-rectangle canvas draw-gcontext* x y (1- width) (1- height))
@@ -122,11 +121,10 @@ RIGHT and BOTTOM are the first column and row after the part. NIL means the edge
                           (setf (svref above (wall-run-left run)) run))))))
     runs))
 
-(defconstant +least-tile-width+ 4
-  "The least width of a tile of a texture, in pixels. Smaller textures could not be recognized.")
+(defconstant +least-tile-width+ 4 "The least width of a texture's tile, in pixels.")
 
 (defun tile-width ()
-  "Return the width in pixels of the tiles of textures, a fraction of a cell. Return NIL if tiles
+  "Return the width in pixels of a texture's tiles, which divide a cell evenly. Return NIL if tiles
 would be narrower than +LEAST-TILE-WIDTH+."
   (let ((width (/ (rational graphics-scale*) (max 1 (round graphics-scale* 7)))))
     (and (<= +least-tile-width+ width) width)))
@@ -145,7 +143,7 @@ TILE pixels wide; without TILE, leave out the texture."
   (max 1 (to-pixels (- to from))))
 
 (defun runs-by-look (runs)
-  "Return lists (look x y width height ...), in pixels: the rectangles of the wall RUNS by look."
+  "Return a list (look x y width height ...), in pixels, for each look of the wall RUNS."
   (let ((lists '()))
     (dolist (run runs lists)
       (let ((list (or (assoc (wall-run-look run) lists :test #'eq)

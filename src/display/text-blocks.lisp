@@ -63,7 +63,7 @@ SNAPSHOT. The view has at most COLUMNS characters a line and at most ROWS lines 
                        when (map-index map x y) collect it))))
 
 (defun block-at (view x y)
-  "Return the number of the block of VIEW, counted by row, that contains the point X, Y, or NIL."
+  "Return the number, counted row by row, of VIEW's block at the point X, Y. Return NIL for none."
   (let ((column (floor (- x (view-left view)) (view-wide view)))
         (row (floor (- y (view-top view)) (view-high view))))
     (when (and (< -1 column (view-columns view)) (< -1 row (view-rows view)))
@@ -87,8 +87,7 @@ Believed positions have the kind :ROBOT, too. INK names CHAR's colour, or is NIL
   (text "" :type string :read-only t)
   (ink nil :type (or symbol string) :read-only t))
 
-(define-constant +several+ #\* :documentation "The character for a block with things of several
-kinds.")
+(define-constant +several+ #\* :documentation "The character for several kinds of things.")
 (define-constant +other+ #\& :documentation "The character for things whose name has no letter.")
 
 ;;; Letters.
@@ -117,8 +116,8 @@ first. Names of things with the same size are in alphabetical order."
               (if (= size-a size-b) (name-before-p a b) (> size-a size-b)))))))
 
 (defun letters-of-thing-names (world)
-  "Return a hash table from the names of the things in WORLD, strings, to their letters. Large
-things choose letters first. If WORLD has more names than letters, some names are missing."
+  "Return a hash table from the names of the things in WORLD, strings, to their letters. Letters are
+given to the largest things first. If WORLD has more names than letters, some names are missing."
   (let ((letters (make-hash-table :test #'equal)) (names (thing-names-by-size world))
         (free (remove #\v (coerce +letters+ 'list))))   ; v is a robot
     (dotimes (rank 4 letters)
@@ -178,7 +177,7 @@ the glyph shows the substance by its colour."
   (char ">v<^" (mod (round (/ angle (/ pi 2))) 4)))
 
 (defun robot-glyph (robot things)
-  "Return the glyph of the image ROBOT. THINGS are images of the things in the same block."
+  "Return the glyph of ROBOT, an image. THINGS are images of the things in the same block."
   (make-glyph :robot (arrow-character (robot-image-angle robot))
               (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-name robot)
                       (zero-if-tiny (robot-image-x robot)) (zero-if-tiny (robot-image-y robot))

@@ -95,7 +95,7 @@ and those of GLYPHS for which there is no room. The items fit beside the map in 
 
 (defun abridged-legend-lines (head items columns rows)
   "Return the legend items HEAD and ITEMS as lines of COLUMNS characters, at most ROWS lines unless
-ROWS is NIL. If items have no room, the last line says how many, if it has room for that number."
+ROWS is NIL. If some items do not fit, the last line says how many, if this number fits."
   (flet ((kept (count &rest more)
            (fill-lines (append head (subseq items 0 count) more) columns))
          (fits-p (lines) (or (null rows) (<= (length lines) rows))))
@@ -119,7 +119,7 @@ ROWS is NIL. If items have no room, the last line says how many, if it has room 
   text)
 
 (defun write-row (sheet row paint stream)
-  "Write row ROW of SHEET to STREAM in colours by the function PAINT. Return the number of glyphs."
+  "Write row ROW of SHEET, coloured by the function PAINT, to STREAM. Return the number of glyphs."
   (let ((glyphs (row-glyphs sheet row)) (view (sheet-view sheet)))
     (format stream "~4D " (+ (view-top view) (* row (view-high view))))
     (loop with rest = glyphs
@@ -172,8 +172,8 @@ ROWS lines if possible. If ROWS is NIL, the number of lines is unlimited."
                    stream))))
 
 (defun fitting-sheet (robot region columns rows layers colored-p)
-  "Return a sheet of REGION for ROBOT that fits into ROWS lines of COLUMNS characters with the fixed
-part of its legend, if possible. Kinds without a thing on the floor keep their letters."
+  "Return a sheet of REGION for ROBOT. If possible, it and the fixed part of its legend fit into
+ROWS lines of COLUMNS characters. Names without a thing on the floor keep their letters."
   (let* ((world (robot-world robot)) (snapshot (take-snapshot world))
          (letters (letters-of-thing-names world))
          (image (snapshot-robot snapshot (robot-name robot))))
@@ -210,9 +210,9 @@ part of its legend, if possible. Kinds without a thing on the floor keep their l
 places, things as letters, robots as arrows, and a legend. With ROWS, the string has at most ROWS
 lines if possible. REGION, a list (left top right bottom) in metres, is the part of the map to show.
 RADIUS, a number of cells, limits the part to the surroundings of ROBOT. LAYERS is a list of names
-such as :WAY and :BELIEF, which *PICTURE-LAYERS* documents. PAINT is NIL or a function. It takes
-a string and the name of a colour or NIL, and returns the coloured string. If ONLY-LEGEND, return
-the legend without the map. Call this function between ticks. Signals WRONG-ARGUMENT."
+such as :WAY and :BELIEF, which *PICTURE-LAYERS* documents. PAINT is NIL or a function that takes a
+string and the name of a colour or NIL, and returns the coloured string. If ONLY-LEGEND, return the
+legend without the map. Call this function between ticks. Signals WRONG-ARGUMENT."
   (check-argument text-map robot (robot-p robot) "a robot")
   (check-argument text-map columns (whole-p columns 10 100000) "an integer from 10 to 100000")
   (check-argument text-map rows (or (null rows) (whole-p rows 5 100000))

@@ -15,7 +15,7 @@
 (defconstant +arrow-length+ 9 "The length of arrowheads on ways, in pixels.")
 
 (defun segments-along (points)
-  "Return lists (length x y dx dy) for the segments longer than 0 of the way POINTS, x y ...."
+  "Return a list (length x y dx dy) for each segment of the way POINTS, x y ..., longer than 0."
   (loop for (x y next-x next-y) on points by #'cddr
         for dx = (and next-y (- next-x x)) and dy = (and next-y (- next-y y))
         for length = (and next-y (sqrt (+ (* dx dx) (* dy dy))))
@@ -48,8 +48,8 @@ there is no room. Overlaps can occur where a way leads back."
           return (list x y angle)))
 
 (defun arrows-along (points &optional others)
-  "Return arrowheads (x y angle) for the way through POINTS, x y ... in pixels. They are far apart
-and do not overlap OTHERS. A very short way has none."
+  "Return arrowheads (x y angle) for the way through POINTS, x y ... in pixels. The arrowheads are
+far apart and do not overlap OTHERS. A very short way has no arrowhead."
   (let* ((pieces (segments-along points)) (whole (reduce #'+ pieces :key #'first))
          (count (if (< whole +least-way-with-arrow+) 0 (max 1 (round whole +arrow-distance+))))
          (arrows '()))
@@ -115,12 +115,11 @@ because ways would overlap there.")
       (dolist (jump jumps) (draw-segments canvas draw-gcontext* jump)))))
 
 (defun jumps-between (pieces)
-  "Return lists x y to-x to-y for the jumps between PIECES of a way, which are lists x y ...."
+  "Return a list x y to-x to-y for each jump between PIECES, lists x y ..., of a way."
   (loop for (piece next) on pieces
         when (and piece next) collect (append (last piece 2) (subseq next 0 2))))
 
 (defun draw-way-halos (canvas lines)
-  "Draw the white halos of the ways LINES and of their jumps."
   (dolist (line lines)
     (with-gcontext (draw-gcontext* :foreground white* :line-width (+ 2 +jump-width+))
       (dolist (jump (jumps-between (way-line-pieces line)))
@@ -129,7 +128,6 @@ because ways would overlap there.")
       (dolist (points (pieces-in-lane line)) (draw-lines canvas draw-gcontext* points)))))
 
 (defun draw-way-arrows (canvas lines)
-  "Draw the arrowheads of the ways LINES, without overlaps."
   (let ((arrows '()))
     (dolist (line (remove-if-not #'way-line-arrows-p lines))
       (dolist (points (pieces-in-lane line))
@@ -210,7 +208,7 @@ because ways would overlap there.")
   (with-color color (draw-circle canvas x y radius t)))
 
 (defun draw-way-marks (canvas marks)
-  "Draw MARKS, lists (function x y color), at ends of ways. Marks on one spot surround each other."
+  "Draw MARKS, lists (function x y color), at ends of ways. Marks at one place surround each other."
   (flet ((near-p (one other)
            (and (< (abs (- (second one) (second other))) +mark-radius+)
                 (< (abs (- (third one) (third other))) +mark-radius+))))

@@ -179,8 +179,8 @@ is an interval, return the interval or point interval of all products (manual, T
 (declaim (inline length-of least-absolute-value greatest-absolute-value))
 
 (defun scaled-length (x y most)
-  "Return the length of the vector (X, Y) if the squares of X and Y overflow or underflow. MOST is
-the larger of their absolute values."
+  "Return the length of the vector (X, Y), even if the squares of X and Y overflow or underflow.
+MOST is the larger of their absolute values."
   (declare (type double-float x y most))
   ;; So that a box's sides and diagonals can be added.
   (when (<= 1d308 most) (error 'floating-point-overflow :operation 'norm :operands (list x y)))

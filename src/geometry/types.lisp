@@ -133,7 +133,7 @@ interval that contains only this number. In Nisp, write (make PT-INTERVAL A B). 
         (t
          (dolist (side (list a b))
            (check-argument make-pt-interval side (or (interval-p side) (finite-p side))
-                           "two intervals or two points; a number is from -1.7e308 to 1.7e308"))
+                           "two points, or two intervals or numbers from -1.7e308 to 1.7e308"))
          (%make-pt-interval (lift a) (lift b)))))
 
 (defun span-between (a b)
@@ -142,7 +142,7 @@ interval that contains only this number. In Nisp, write (make PT-INTERVAL A B). 
   (%make-interval (min a b) (max a b)))
 
 (defun lift (x)
-  "Return a copy of X, an interval; for a number or point, a new interval that contains only X."
+  "If X is an interval, return a copy; for a number or point, an interval that contains only X."
   (etypecase x
     (real (let ((x (double x))) (%make-interval x x)))
     (interval (%make-interval (%interval-min x) (%interval-max x)))

@@ -142,8 +142,8 @@ SLOTS is an alist from names of slots to names of readers."
           and collect element))
 
 (defun untyped-lambda-list (lambda-list &optional (operator "lambda"))
-  "Return LAMBDA-LIST, in which a hyphen and a type may follow each variable, as an ordinary lambda
-list. Error messages name OPERATOR, a string (manual 3.1)."
+  "Return LAMBDA-LIST as an ordinary lambda list, without the hyphen and type that may follow each
+variable. Error messages name OPERATOR, a string (manual 3.1)."
   (without-types operator lambda-list "parameters"))
 
 (defun untyped-bindings (bindings &optional (operator "let"))

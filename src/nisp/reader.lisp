@@ -32,7 +32,7 @@
   (reject-clause "Nisp's reader" text expected))
 
 (defun token-object (token)
-  "Return TOKEN as the standard reader reads it. Signals MALFORMED-DEFINITION if incomplete."
+  "Return TOKEN read by the standard reader. Signals MALFORMED-DEFINITION if TOKEN is incomplete."
   (let ((*readtable* (find-readtable :standard)))
     (handler-case (values (read-from-string token))
       ;; The text around TOKEN is complete, so that is no END-OF-FILE there.

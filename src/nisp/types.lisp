@@ -77,7 +77,7 @@ unknown TYPE and MISUSE for a wrong number of ARGUMENTS."
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (define-generic-function-class slot-accessor
-    "The class of functions that read or set the slot of one name in objects of all types.")
+    "The class of functions that read or set slots of one name in objects of any type.")
 
   (defun slot-accessor-name (slot)
     "Return the symbol that names the accessor of the slot named SLOT."
@@ -105,7 +105,7 @@ has the accessor's name."))
           append (nisp-type-slots type)))
 
 (defun users-slot-names (object)
-  "If OBJECT's class is a user's, return the names of its slots, a list of symbols; else NIL."
+  "If a user defined OBJECT's class, return the names of its slots, a list of symbols; else NIL."
   (let ((class (class-of object)))
     (when (and (typep class '(or structure-class standard-class))
                (users-symbol-p (class-name class))
@@ -149,7 +149,7 @@ has the accessor's name."))
           (acons slot reader (remove slot (nisp-type-slots type) :key #'car :test #'string=)))))
 
 (defun slot-reader-for-type (type slot)
-  "Return the name of the accessor of SLOT for TYPE, or if there is none, of SLOT for all types."
+  "Return the name of the accessor of SLOT for TYPE. If TYPE has none, take that for all types."
   (let* ((known (find-nisp-type type))
          (class (and known (find-class (nisp-type-class known) nil))))
     (or (and class (cdr (assoc (string slot) (class-slot-readers class) :test #'string=)))

@@ -92,8 +92,8 @@ fraction (the even part of DLMF 8.9.2)."
         (t (* a (poisson-density a x) (gamma-fraction a x)))))
 
 (defun chi-square-tail (x freedom)
-  "Return the probability that a chi-square variable with FREEDOM degrees of freedom, 1 or more, is
-above X, 0 or more (Abramowitz and Stegun 26.4.19)."
+  "Return the probability that a chi-square variable with FREEDOM degrees of freedom is above X.
+FREEDOM is at least 1, and X at least 0 (Abramowitz and Stegun 26.4.19)."
   (upper-gamma (/ (double freedom) 2) (/ (double x) 2)))
 
 ;;;; The normal distribution
@@ -107,7 +107,7 @@ above X, 0 or more (Abramowitz and Stegun 26.4.19)."
         (- 1 (/ (upper-gamma .5d0 half) 2)))))
 
 (defmacro ratio-of-polynomials (x above below)
-  "Return the ratio of two polynomials of X, with the coefficients ABOVE and BELOW, from X^0 on."
+  "Return the ratio of two polynomials of X. ABOVE and BELOW are their coefficients, from X^0 on."
   (flet ((horner (coefficients)
            (reduce (lambda (coefficient form) `(+ ,coefficient (* ,x ,form)))
                    coefficients :from-end t)))

@@ -96,8 +96,8 @@ cubed. The power is 1 unless all numbers of SAMPLE are very small."
   (if (= 1 factor) sample (map 'doubles (lambda (x) (* factor x)) sample)))
 
 (defun mean-standard-error (sample &optional (size 1))
-  "Return the estimated standard deviation of the mean of SIZE numbers from the distribution of
-which SAMPLE, at least two numbers, is a sample."
+  "SAMPLE, at least two numbers, is from a distribution. Return the estimated standard deviation of
+the mean of SIZE numbers from this distribution."
   (let ((factor (magnification sample)))
     (/ (sqrt (/ (variance-of (magnified sample factor)) size)) factor)))
 

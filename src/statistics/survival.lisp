@@ -26,8 +26,8 @@ EVENTS-NAME are their names as arguments of OPERATOR."
       (length dated)))
 
 (defun map-event-times (function dated)
-  "DATED is sorted by time. For each time of an event, call FUNCTION with the start and end index of
-the elements of DATED that have this time."
+  "DATED is a value of SORTED-EVENTS. For each time at which a trial was done, call FUNCTION with
+the start and end index of the elements of DATED that have this time."
   (loop with start = 0
         while (< start (length dated))
         do (let ((end (next-time-start dated start)))

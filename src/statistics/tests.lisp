@@ -91,7 +91,7 @@ estimated by importance sampling, for small probabilities."
 ;;; which are common with whole numbers. If there are too many, signs are drawn instead.
 
 (defparameter *most-exact-sums* (expt 2 18)
-  "The exact test is given up if the number of sums times that of differences left is above this.")
+  "The exact test is given up if the number of sums, times the differences left, is above this.")
 
 (deftype sums ()
   "A cons of a sorted vector of sums and a vector of their probabilities."
