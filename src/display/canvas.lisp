@@ -16,7 +16,7 @@
 
 (define-record (gcontext (:constructor create-gcontext
                              (&key foreground background line-width line-style dashes)
-                             "Return a new graphics context, for solid black lines by default.")
+                             "Return a graphics context. Default: solid black lines, 1 pixel wide.")
                          (:copier copy-gcontext))
   "A graphics context: colours, line width, line style and dashes for drawing."
   (foreground #x000000 color
