@@ -33,10 +33,11 @@
   (is (not (search "ARS" (hint-to-variable (stranger "NOBODYS-NAME"))))))
 
 (test names.of-plans-without-a-quote-are-hinted-at
-  (is-true (has-words-p (hint-to-variable 'turn-once) "It is the name of a plan: 'turn-once."))
+  (is-true (has-words-p (hint-to-variable 'turn-once)
+                        "It is the name of a plan: write 'turn-once."))
   (is-true (has-words-p (basics::lisp-error-text
                          (make-condition 'unbound-variable :name 'turn-once))
-                        "has no value. It is the name of a plan: 'turn-once.")))
+                        "has no value. It is the name of a plan: write 'turn-once.")))
 
 (test syntax.of-nisp-is-hinted-at
   (let ((*readtable* (copy-readtable nil)))

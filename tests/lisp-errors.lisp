@@ -27,7 +27,7 @@
     ("(elt (vector 1 2 3) 5)" "The value 5 is not from 0 to 2.")
     ("(elt (vector) 0)" "The value 0 is not in range: nothing is there.")
     ("(funcall 5)" "The value 5 is not a function.")
-    ("(random 0)" "The value 0 is not one that can be used here.")
+    ("(random 0)" "The value 0 cannot be used here.")
     ("(write-to-string 1 :base 50)" "The value 50 is not from 2 to 36.")
     ("(getf 5 :where)" "The value 5 is not a list.")
     ("(string= 5 \"far\")" "The value 5 is not a string.")

@@ -45,7 +45,6 @@
   (:documentation "A function was called with an argument that it cannot use."))
 
 (defun reject-argument (operator name value expected)
-  "Signal WRONG-ARGUMENT."
   (error 'wrong-argument :operator operator :name name :value value :expected expected))
 
 (defmacro check-argument (operator place test expected)
@@ -143,8 +142,8 @@ file the warning is a STYLE-WARNING. (Scripts hide style warnings, but scripts a
   (:documentation "No definition or object of the requested kind has the given name."))
 
 (defun reject-name (kind name known &optional (meant known))
-  "Signal UNKNOWN-NAME, because nothing of KIND (a string) has the name NAME. The error lists the
-names KNOWN and suggests the most similar of the names MEANT."
+  "Signal UNKNOWN-NAME: there is no KIND (a string) with the name NAME. The error lists the names
+KNOWN, and suggests the name in MEANT that is most similar to NAME."
   (error 'unknown-name :kind kind :name name :known known
                        :nearest (and (typep name '(or symbol string))
                                      (nearest-name name meant))))
@@ -170,7 +169,7 @@ names KNOWN and suggests the most similar of the names MEANT."
 ;;;; Refusing to exit a Lisp that is shared with other code
 
 (defvar *exit-refusal* nil
-  "While code must not exit this Lisp, the text of the error that EXIT signals; else NIL.")
+  "The text of the error that EXIT signals while code must not exit this Lisp; else NIL.")
 
 (defun exit-unless-refused (function &rest arguments)
   "Apply FUNCTION, which exits this Lisp, to ARGUMENTS. Signals MISUSE if exits are refused."
@@ -223,7 +222,7 @@ If TEXT is NIL, let EXIT exit again."
   (within-p value +largest+))
 
 (defun bounded-number-p (value)
-  "True if VALUE, such as the value of an attribute, is a number from -1e15 to 1e15."
+  "True if VALUE is a number from -1e15 to 1e15, as the value of an attribute must be."
   (within-p value +largest-quantity+))
 
 (defun amount-p (value)

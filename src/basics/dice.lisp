@@ -60,7 +60,7 @@
           (t (char-code (char-upcase char))))))
 
 (defun name-hash (name)
-  "Return a 64-bit hash of NAME, a string designator, in upper case."
+  "Return a 64-bit hash of NAME, a string designator, regardless of case."
   (declare #.*hot*)
   (characters-hash (string name) #'upper-code))
 
@@ -91,7 +91,8 @@ WRONG-ARGUMENT unless PROBABILITY is a number from -1e15 to 1e15."
 
 (addition roll-between)
 (defun roll-between (low high dice)
-  "Return a double-float uniform in [LOW, HIGH), numbers from -1e15 to 1e15 (else WRONG-ARGUMENT)."
+  "Return a double-float uniform in [LOW, HIGH). Signals WRONG-ARGUMENT unless LOW and HIGH are
+numbers from -1e15 to 1e15."
   (check-argument roll-between low (bounded-number-p low) "a number from -1e15 to 1e15")
   (check-argument roll-between high (bounded-number-p high) "a number from -1e15 to 1e15")
   (let ((low (double low)) (high (double high)))
@@ -136,17 +137,16 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
 
 (define-record (digest (:constructor make-digest ()
                          "Return a digest to which nothing has been added."))
-  "A hash of data, in order (FNV-1a, 64 bits)."
+  "A hash of a sequence of data (FNV-1a, 64 bits)."
   (value #xCBF29CE484222325 word "the hash of all data added so far, 64 bits" :writable :export))
 
 (declaim (inline digest-add-word))
 (defun digest-add-word (digest word)
-  "Add WORD, 64 bits, to DIGEST."
   (setf (digest-value digest)
         (mix-bits (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 
 (defgeneric digest-add-identity (object digest)
-  (:documentation "Add what identifies OBJECT, or else its contents, to DIGEST. Return DIGEST."))
+  (:documentation "Add to DIGEST data that identify OBJECT, or else its contents. Return DIGEST."))
 
 (defun digest-add (digest datum)
   "Add DATUM to DIGEST: numbers to the bit, symbols and strings by name, lists and vectors by

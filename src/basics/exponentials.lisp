@@ -85,7 +85,7 @@ first with 42 binary places.")
 
 (declaim (inline %logarithm))
 (defun %logarithm (number)
-  "Return the logarithm of NUMBER, 10 ns faster than LOGARITHM, by 500 bytes of inline code."
+  "Return the logarithm of NUMBER, 10 ns faster than LOGARITHM, but with 500 bytes of inline code."
   (declare (type (double-float (0d0)) number))
   (multiple-value-bind (r r-low base base-low) (logarithm-parts number)
     (with-sum-parts (high low) ((+ base r))

@@ -58,15 +58,15 @@ a file of KIND is and which function reads it."
              *kinds-of-files* :key #'second)))
 
 (defun advice-on-file (path kind)
-  "If the file PATH is of another known kind than KIND, a keyword, return a text that says what the
-file is and which function reads it; else return NIL."
+  "Return a text that says what the file PATH is and which function reads it. Return NIL if the file
+is of KIND, a keyword, or of no known kind."
   (let ((entry (find-kind-of-file path)))
     (and entry
          (not (eq kind (first entry)))
          (third entry))))
 
 (defun other-kind-of-file-p (file kind)
-  "True if FILE exists, unless it can be read and is empty or begins like a file of KIND."
+  "True if FILE exists, is not empty, and does not begin like a file of KIND; or is unreadable."
   (let ((path (ignore-errors (probe-file file))))
     (and path
          (not (ignore-errors
@@ -75,7 +75,7 @@ file is and which function reads it; else return NIL."
                         (eq kind (first (find-kind-of-file path))))))))))
 
 (defun check-kind-of-file (file kind what)
-  "Signal MISUSE if FILE exists, is not empty and is not of KIND, which the message calls WHAT."
+  "Signal MISUSE if FILE exists, is not empty and is not of KIND, called WHAT in the message."
   (when (other-kind-of-file-p file kind)
     (reject-use "~A is no ~A. The file is unchanged; give another name."
                 (file-name-text file) what)))

@@ -94,7 +94,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
     (list (first parts) (/ (second parts) (first parts)))))
 
 (defconstant +least-mantissa+ #x3FE6000000000000
-  "The bits of 0.6875. Mantissas go from 0.6875 to 1.375, so K is 0 for numbers near 1.")
+  "The bits of 0.6875. Mantissas go from 0.6875 to 1.375, so the exponent of numbers near 1 is 0.")
 
 (defun mantissa-row-center (row)
   (flet ((bound (row) (rational (bits-to-double (+ +least-mantissa+ (ash row 45))))))
@@ -140,7 +140,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
          (aref ,cells ,count)))))
 
 (defmacro define-cell-function (name (&rest arguments) &body body)
-  "Define the function NAME of a vector of ARGUMENTS, in whose last cell it stores BODY's value."
+  "Define the function NAME. It takes a vector of ARGUMENTS and a cell to store BODY's value in."
   (let ((count (length arguments)))
     `(defun ,name (cells)
        (declare #.*hot* (type (simple-array double-float (,(1+ count))) cells))
@@ -191,7 +191,7 @@ inline check would box the double-float."
 
 (declaim (inline product-error))
 (defun product-error (a b product)
-  "Return A times B, exactly, minus PRODUCT, the rounded product of A and B (Dekker)."
+  "Return the exact product of A and B minus PRODUCT, their rounded product (Dekker)."
   (declare (type double-float a b product))
   (let* ((a-head (upper-bits a)) (a-tail (- a a-head))
          (b-head (upper-bits b)) (b-tail (- b b-head)))

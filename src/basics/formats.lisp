@@ -10,7 +10,7 @@
 (define-condition broken-line (ars-magna-error)
   ((line :initarg :line :reader broken-line-text))
   (:report (lambda (condition stream)
-             (format stream "This line is no row of a table: ~A"
+             (format stream "The quotes in this line of a CSV table are wrong: ~A"
                      (cut (broken-line-text condition) 200))))
   (:documentation "A line of a CSV table cannot be parsed."))
 
@@ -140,8 +140,8 @@
 ;;;; JSON, XML and HTML
 
 (defun write-json-string (text stream &key in-page)
-  "Write TEXT to STREAM as a JSON string, valid in JavaScript too. If IN-PAGE is true, TEXT cannot
-end the script element of the page that contains it."
+  "Write TEXT to STREAM as a JSON string, valid in JavaScript too. If IN-PAGE is true, escape TEXT
+so that it cannot end the script element of its web page."
   (write-char #\" stream)
   (loop for char across text
         for code = (char-code char)

@@ -20,14 +20,14 @@
 ;;; roll makes SBCL renew the words. A copy of such words means the same.
 
 (defconstant +position-index+ 2
-  "The index, among the words of a random state, of the position of the next word to read.")
+  "The index of the word of a random state that holds the position of the next word to read.")
 (defconstant +first-word-index+ (1+ +position-index+))
 (defconstant +end-of-words+ 624 "The position after the last word.")
 (define-constant +mark+ #(#x6C617A79 #x64696365 #x2E2E2E2E) :test #'equalp
   :documentation "The mark: the words after the seed in a random state that is not yet filled.")
 
 (defun mark-seeded (words seed)
-  "Store SEED and the mark in WORDS, to be filled from SEED when SBCL renews the random state."
+  "Store SEED and the mark in WORDS. They are filled from SEED when SBCL renews the random state."
   (declare (type random-words words))
   (setf (aref words +position-index+) +end-of-words+
         (aref words +first-word-index+) seed)
@@ -164,7 +164,7 @@ since it was seeded, list only the seed; else list the position of the next word
 ;;; or, after the last word, the words.
 
 (defstruct (random-snapshot (:constructor make-random-snapshot (position words)) (:copier nil))
-  "A snapshot of a random state: its next word's POSITION and its WORDS, with an outdated position."
+  "A snapshot of a random state: its WORDS, in which the position is outdated, and its POSITION."
   (position 0 :type (unsigned-byte 32) :read-only t)
   (words nil :type (simple-array (unsigned-byte 32) (*)) :read-only t))
 

@@ -53,7 +53,7 @@ SYMBOL is an addition to the manual."
 
 (defmacro public (&rest names)
   "Mark NAMES, which are defined next, as public names that the manual has. A name may be a list
-(name face...), with the packages, :ARS and :NISP, that export the name."
+(name face...). The faces, :ARS or :NISP, are the packages that export the name."
   `(mark-public-names ',names nil))
 
 (defmacro addition (&rest names)
@@ -65,7 +65,7 @@ a list (name face...), as for PUBLIC."
 
 (defmacro settable (&rest names)
   "Let users SETF the functions NAMES, which are public. Users cannot SETF other functions, because
-the state of a run must be changed by functions that the journal records."
+only functions that the journal records may change the state of a run."
   `(setf *settable* (union *settable* ',names)))
 
 (defun settable-p (symbol)
@@ -84,8 +84,8 @@ the state of a run must be changed by functions that the journal records."
     (and mark (mark-addition-p mark))))
 
 (defun addition-text (text)
-  "Return TEXT, the documentation of an addition to the manual. If TEXT lacks the sentence that says
-this, add it as the last line, and remove a reference to a chapter of the manual."
+  "Return TEXT, the documentation of an addition to the manual. If TEXT lacks the sentence \"An
+addition to the manual.\", add it as the last line, and remove a reference to chapter C."
   (let ((sentence "An addition to the manual."))
     (if (search sentence text)
         text
@@ -125,7 +125,7 @@ this, add it as the last line, and remove a reference to a chapter of the manual
       (format nil "Return ~A." text)))
 
 (defun function-texts (name documentation predicate constructors)
-  "PREDICATE and CONSTRUCTORS are (symbol [arguments] [text]). Return an alist (symbol . text)."
+  "Return an alist (symbol . text) for PREDICATE and CONSTRUCTORS, (symbol [arguments] [text])."
   (flet ((texts (beginning functions)
            (loop for (function . rest) in functions
                  when function
@@ -147,7 +147,7 @@ of the slot's name, returns the reader's name."
               (when added `((addition ,@added)))))))
 
 (defun values-of-option (key options &optional default)
-  "Return a list: the arguments of each option KEY in OPTIONS; if there is none, only DEFAULT."
+  "Return a list of the arguments of each option KEY in OPTIONS; (DEFAULT) if there is none."
   (or (loop for option in options when (eq key (first option)) collect (rest option))
       (list default)))
 

@@ -18,7 +18,7 @@
     (cons "a list with elements") (list "a list") (symbol "a symbol")
     (hash-table "a hash table") (array "an array") (sequence "a list, vector or string")
     ((or function symbol) "a function") (stream "a stream") (pathname "a path"))
-  "Lists (type words). A message names the first type that the wrong value does not have.")
+  "Lists (type words). Messages name the first that includes the expected type, not the value.")
 
 (defparameter *arithmetic-texts*
   '((division-by-zero "A number is divided by 0.")
@@ -44,7 +44,7 @@
             return words)))
 
 (defun limits-of-integer-type (type)
-  "For TYPE (integer LEAST GREATEST) or (mod N), return its least and greatest integers, and true. A
+  "Return the least and greatest integers of TYPE, (integer LEAST GREATEST) or (mod N), and true. A
 missing limit is NIL. For other types, return NIL three times."
   (flet ((bound (bound step)
            (cond ((integerp bound) bound)
@@ -85,7 +85,7 @@ Return NIL if TYPE is no range of integers, or DATUM is no integer."
       (cond (words (format nil "The value ~A is not ~A.~@[ ~A~]"
                            value words (funcall *report-addition* condition)))
             ((member (type-of condition) '(type-error simple-type-error))
-             (format nil "The value ~A is not one that can be used here." value))))))
+             (format nil "The value ~A cannot be used here." value))))))
 
 ;;; All of Lisp's own errors.
 
@@ -205,7 +205,7 @@ FORMAT-BRIEFLY. An object that is already being printed does not count as circul
                  trouble))))
 
 (defun reading-error-text (condition)
-  "Return the text of CONDITION, which says why Lisp text cannot be read, without names of streams."
+  "Return the text of CONDITION, an error of the Lisp reader, without names of streams."
   (let* ((cause (cause-of-reading-error condition))
          (text (cond ((encoding-error-text cause))
                      ((typep cause 'simple-condition)
@@ -290,8 +290,8 @@ printed form, or an empty text if it cannot be printed."
   (if (< (abs number) 0.005d0) 0 number))
 
 (defun coordinate-text (number)
-  "Return NUMBER, a coordinate in metres, as text, rounded to a tenth of a millimetre: a typed 23.2
-is 23.2, not 23.200000762939453. Numbers closer to 0 than 0.00005 have an exponent."
+  "Return the coordinate NUMBER, in metres, as text rounded to 0.1 mm: a typed 23.2 is shown as
+23.2, not as 23.200000762939453. Numbers closer to 0 than 0.00005 have an exponent."
   (let ((text (string-right-trim "0" (format nil "~,4F" number))))
     (cond ((< 0 (abs number) 5d-5)
            (let ((*read-default-float-format* 'double-float)) (prin1-to-string (double number))))

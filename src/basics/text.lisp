@@ -182,7 +182,7 @@ no-break spaces only if they have no other space. No-break spaces become spaces.
   (let ((*print-case* :downcase)) (unqualified-text datum)))
 
 (defun safe-text (object &key (escape t) (length 500))
-  "Return OBJECT as PRIN1 prints it, or PRINC unless ESCAPE, without package prefixes, in at most
+  "Return OBJECT as printed by PRIN1 (PRINC if not ESCAPE), without package prefixes, in at most
 LENGTH characters. Deep, long and circular data are abridged. If printing fails, the text says so."
   (handler-case
       (let ((*print-circle* t) (*print-pretty* nil) (*print-readably* nil) (*print-escape* escape)
@@ -217,7 +217,7 @@ LENGTH characters. Deep, long and circular data are abridged. If printing fails,
   (or (eq a b) (%same-name-p a b)))
 
 (defun value-equal (a b)
-  "True if A and B are equal attribute values: symbols by name, numbers, or lists (reading 38)."
+  "True if A and B are equal attribute values; symbols are compared by name (reading 38)."
   (cond ((eq a b) t)
         ((and (symbolp a) (symbolp b)) (and a b (same-name-p a b)))
         ((and (numberp a) (numberp b)) (= a b))

@@ -72,8 +72,8 @@ is the file and line of CLAUSE. EXPECTED describes a valid clause."
                                :place place))
 
 (defun check-function-name (definition name)
-  "Signal MALFORMED-DEFINITION if NAME, the name in DEFINITION, cannot be the name of a function, or
-belongs to a package in which users cannot define functions."
+  "Signal MALFORMED-DEFINITION about DEFINITION if NAME cannot name a function, or belongs to a
+package in which users cannot define functions."
   (unless (or (symbolp name) (and (consp name) (eq 'setf (first name))))
     (reject-clause definition name "a symbol as the name"))
   (let ((package (and (symbolp name) (symbol-package name))))
@@ -99,12 +99,11 @@ belongs to a package in which users cannot define functions."
   (list (read *query-io*)))
 
 (defun definition-in-file-p (condition)
-  "True if the current definition, with the error CONDITION, can be read again from its file."
+  "True if the current definition can be read again from its file, regardless of CONDITION."
   (declare (ignore condition))
   (and (current-source) t))
 
 (defun reread-definition (definition)
-  "Read the form of DEFINITION again from its file, and return it."
   (read-definition-again (source-file (defining-source definition))
                          (defining-form definition) (defining-ordinal definition)))
 
@@ -127,8 +126,8 @@ with VALUE in place of the rejected clause."
 
 (defun call-with-definition-restarts (function replace)
   "Call FUNCTION, with restarts for an error in the current definition. SKIP-DEFINITION skips the
-definition. READ-AGAIN calls REPLACE with the form that is now in its file, USE-VALUE with a form
-that has another clause. The new form has these restarts, too."
+definition. READ-AGAIN calls REPLACE with the form now in its file; USE-VALUE calls REPLACE with a
+form that has another clause. The new form has these restarts, too."
   (let ((definition *definition*))
     (flet ((instead (choose)
              (call-with-definition-restarts

@@ -109,8 +109,8 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
 ;;; Source locations for editors.
 
 (defun definition-sources (name)
-  "Return a list of lists (file position operator): where NAME, a symbol, is now defined as a map, a
-robot and so on. Lisp itself knows where variables and functions are defined."
+  "Return a list (file position operator) for each definition of the symbol NAME as a map, a robot
+and so on. Lisp itself knows where variables and functions are defined."
   (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
         for file = (and entry (not (entry-variable entry)) (source-file (entry-source entry)))

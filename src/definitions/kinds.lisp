@@ -97,7 +97,7 @@ BASE and the kinds that include BASE count. Return NIL if no such kind has this 
   (funcall (kind-slot-reader slot) object))
 
 (defun object-slots (object &rest roles)
-  "Return a list (name value text) for each slot of OBJECT whose role is among ROLES (none: all)."
+  "Return a list (name value text) for each slot of OBJECT with one of ROLES, or for all slots."
   (loop for slot in (kind-slots (kind-of object))
         when (or (null roles) (member (kind-slot-role slot) roles))
           collect (list (kind-slot-name slot) (slot-content slot object) (kind-slot-text slot))))
@@ -210,7 +210,7 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
                        (lambda (value object) (setf (,reader (the ,name object)) value))))))
 
 (defun kind-options (form)
-  "Return three values from FORM, as in DEFINE-KIND: name, included kind or NIL, and constructor."
+  "Return the name, included kind (or NIL) and constructor in FORM, as in DEFINE-KIND."
   (destructuring-bind (name &rest options) (ensure-list form)
     (unless (and (proper-list-p options) (evenp (length options))
                  (loop for key in options by #'cddr always (member key '(:include :constructor))))

@@ -23,7 +23,7 @@
   '(member :report :signal :collect))
 
 (defvar *request-origin* nil
-  "The origin, a value of CURRENT-ASKER-NOTE, of the request that messages are about; or NIL.")
+  "The origin of the request that messages are about, a value of CURRENT-ASKER-NOTE; or NIL.")
 
 (defvar *reported-robot* nil
   "The name of the robot that messages queued in this thread are about, or NIL.")

@@ -11,7 +11,7 @@
       (setf (slot-value object name) (slot-value model name)))))
 
 (defun entry-snapshot (entry)
-  "Return a list: ENTRY, a copy of its object, and a list with its variable's value (NIL: unbound)."
+  "Return a list: ENTRY, a copy of its object, and a list of its variable's value (NIL if unbound)."
   (let ((variable (entry-variable entry)))
     (list entry
           (copy-structure (entry-object entry))
@@ -61,6 +61,6 @@ to restore afterwards. Signals MISUSE if another thread is inside."
 (defmacro with-own-definitions (() &body body)
   "Run BODY. Then undo all definitions, redefinitions and undefinitions by BODY (of maps, robots,
 kickers and so on), even after an error. Made for tests. Return the values of BODY. If BODY
-redefines the map of a run, that run ends; start another with SIMULATOR. Definitions are shared by
-all threads. If another thread is inside this macro, it signals MISUSE."
+redefines the map of a run, that run ends; start another with SIMULATOR. All threads share
+definitions; so if another thread is inside this macro, it signals MISUSE."
   `(call-with-own-definitions (lambda () ,@body)))

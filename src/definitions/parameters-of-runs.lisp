@@ -62,7 +62,7 @@ are added by name, and only if they differ from their defaults. So earlier diges
                 (when others (digest-add digest others))))
 
 (defun changed-parameters (known)
-  "Return an alist (symbol . value) of the parameters that differ from KNOWN, old PARAMETER-VALUES."
+  "Return an alist (symbol . value) of the parameters changed since PARAMETER-VALUES gave KNOWN."
   (declare (type simple-vector known))
   (loop for parameter in (registry-objects *parameters*)
         for old across known

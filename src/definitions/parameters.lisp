@@ -277,7 +277,7 @@ tick lasts TICK-QUANTUM* units."
 (declaim (inline noise-of-step))
 (defun noise-of-step (noise step unit)
   "Return the relative error of a step of the length STEP. NOISE is the relative error of a step of
-the length UNIT, in a unit of time. In a tick of many units, the errors partly cancel out."
+the length UNIT, which takes a unit of time. In a tick of many units, the errors partly cancel out."
   (declare (type (double-float 0d0) step unit))
   (if (<= step unit)
       (double noise)

@@ -61,7 +61,7 @@ value of LOCATION-IN-TEXT. Return NIL if both fail."
                                    start)))))))
 
 (defun line-of-form-being-read (stream)
-  "LOAD is reading a form from STREAM. Return the number of the line on which the form begins."
+  "Return the number of the first line of the form that LOAD is reading from STREAM."
   (let ((text (file-text (pathname stream))))
     (line-number text (skip-blanks text (min (form-start stream) (length text))))))
 

@@ -67,7 +67,7 @@ strings and symbols" :writable))
               thereis (same-name-p name alias))))
 
 (defun qualified-symbol (name)
-  "Return the symbol that the string NAME, such as \"P:NAME\", names, if necessary upcased; or NIL."
+  "Return the symbol named by the string NAME, such as \"P:NAME\" or \"p:name\"; or NIL."
   (let ((colon (and (stringp name) (position #\: name))))
     (when (and colon (plusp colon))
       (let* ((prefix (subseq name 0 colon))
@@ -97,7 +97,6 @@ strings and symbols" :writable))
         when (and entry (users-entry-p entry)) collect entry))
 
 (defun defined-names (registry)
-  "Return a list of the names defined in REGISTRY, in order."
   (mapcar #'entry-name (registry-entries registry)))
 
 (defun names-to-suggest (registry)
@@ -108,7 +107,8 @@ the users' names, the newest first, then the simulator's names."
                                  (remove-if #'users-entry-p entries)))))
 
 (defun find-definition (name registry errorp)
-  "Return the object in REGISTRY named NAME, or NIL, or signal UNKNOWN-NAME if ERRORP is true."
+  "Return the object named NAME in REGISTRY, or NIL; if ERRORP is true, signal UNKNOWN-NAME
+instead."
   (let ((entry (lookup-entry name registry)))
     (cond (entry (entry-object entry))
           (errorp (reject-name (registry-text registry) name (names-to-suggest registry))))))
@@ -122,7 +122,7 @@ the users' names, the newest first, then the simulator's names."
 ;;; Defining.
 
 (defgeneric undo-definition (object)
-  (:documentation "Undo the effects of OBJECT's definition. Its entry is removed elsewhere.")
+  (:documentation "Undo the effects of OBJECT's definition, except its entry in the registry.")
   (:method (object) object))
 
 (defgeneric redo-definition (object)
@@ -151,7 +151,7 @@ because the definition is restored.")
   (not (equal *simulator-source* (entry-source entry))))
 
 (defun entries-including (new old before registry)
-  "Return the entries of REGISTRY and the entry NEW: before the entry of the object BEFORE, if
+  "Return the entries of REGISTRY with NEW inserted: before the entry of the object BEFORE, if
 given; else in place of the entry OLD, unless an entry of the same name follows it; else last."
   (let* ((entries (registry-entries registry)) (others (remove old entries)))
     (cond (before (let ((tail (member before others :key #'entry-object)))
@@ -194,7 +194,7 @@ NAME is a symbol of Common Lisp or of the simulator."
 
 (defun replace-entry (old new registry before value)
   "Add the entry NEW to REGISTRY, in place of the entry OLD or before the object BEFORE. Set NEW's
-variable, if any, to VALUE. Return true; if another thread has replaced OLD, only return NIL."
+variable, if any, to VALUE. Return true, or only NIL if another thread has replaced OLD."
   (with-lock (*registries-lock*)
     (when (eq old (entry-to-replace (entry-name new) registry))
       (set-entries registry (entries-including new old before registry))
@@ -202,10 +202,10 @@ variable, if any, to VALUE. Return true; if another thread has replaced OLD, onl
       t)))
 
 (defun register (registry name object &key variable (value object) before)
-  "Define NAME as OBJECT in REGISTRY, replacing an earlier definition. If VARIABLE is true, set the
-special variable NAME to VALUE, if NAME can be a special variable and is unused. A new entry is
-added at the end, or before the entry of the object BEFORE. Return OBJECT and the object that it
-replaces, or NIL. If several threads define NAME at a time, each replaces a different object."
+  "Define NAME as OBJECT in REGISTRY, replacing an earlier definition. If VARIABLE is true, and NAME
+can be a special variable and is unused, set NAME to VALUE. A new entry is added at the end, or
+before the entry of the object BEFORE. Return OBJECT and the object that it replaces, or NIL. If
+several threads define NAME at a time, each replaces a different object."
   (loop
     (let* ((old (entry-to-replace name registry))
            (variable (and variable (choose-variable name old registry)))

@@ -19,7 +19,7 @@ this function, and the name of that package. Else return NIL."
 ;;; Names in other packages.
 
 (defun user-packages ()
-  "Return a list of users' packages (that use ARS, but not the simulator's), with ARS-USER first."
+  "Return a list of the packages that use ARS, except the simulator's own. ARS-USER is first."
   (let ((ours (find-package "ARS-USER")))
     (cons ours
           (remove-if (lambda (package)
@@ -40,7 +40,7 @@ sentence that says how to use this symbol; or NIL if there is no such symbol."
                       (package-name package))))))))
 
 (defun accessible-symbols (package test)
-  "Return, sorted, the symbols accessible in PACKAGE for which TEST is true, but not Common Lisp's."
+  "Return a sorted list of the symbols accessible in PACKAGE that pass TEST, except Common Lisp's."
   (let ((symbols '()) (lisp (find-package "COMMON-LISP")))
     (do-symbols (symbol package)
       (when (and (not (eq lisp (symbol-package symbol))) (funcall test symbol))
@@ -50,8 +50,8 @@ sentence that says how to use this symbol; or NIL if there is no such symbol."
 ;;; Functions.
 
 (defgeneric function-of-command (name)
-  (:documentation "NAME is a symbol without a function. If it is a command at the prompt, return the
-name of the function that it calls; else NIL. The layer that defines commands has a method.")
+  (:documentation "If NAME, a symbol without a function, is a command at the prompt, return the name
+of the function that it calls; else NIL. The layer that defines commands has a method.")
   (:method (name) (declare (ignore name)) nil))
 
 (defun undefined-function-text (name)
@@ -82,7 +82,7 @@ name of the function that it calls; else NIL. The layer that defines commands ha
   (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
         when (and entry (not (entry-variable entry)))
-          return (format nil "It is the name of ~:[a~;an~] ~A: '~(~A~)."
+          return (format nil "It is the name of ~:[a~;an~] ~A: write '~(~A~)."
                           (find (char (registry-usual-name registry) 0) "aeiou")
                           (registry-usual-name registry) (unqualified-text name))))
 
@@ -149,7 +149,7 @@ value to pass in its place; or NIL.")
       (add-full-stop (format nil "Give ~A" (argument-type-text type datum))))))
 
 (defun error-hint (condition)
-  "Return a sentence on what the user perhaps meant, or what to do, after a Lisp CONDITION; or NIL."
+  "Return a sentence on what the user meant or should do, after the Lisp error CONDITION; or NIL."
   (typecase condition
     (undefined-function (undefined-function-text (cell-error-name condition)))
     (unbound-variable (unbound-variable-text (cell-error-name condition)))

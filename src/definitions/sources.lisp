@@ -163,7 +163,7 @@ than once, prefer the first position after that of the last search."
           (look forms)))))
 
 (defun word-position (text form start end)
-  "Return where FORM, or the first element of a list FORM, is in TEXT from START to END; or NIL."
+  "Return the position of FORM, or of its first element, in TEXT from START to END; or NIL."
   (let ((word (if (consp form) (first form) form)))
     (and word
          (or (symbolp word) (realp word))
@@ -197,7 +197,7 @@ return the line of the definition, or NIL."
   (ignore-errors (line-of-clause (text-of-file file) form clause)))
 
 (defun count-in-file (word file)
-  "Return how often WORD occurs in FILE or its comments, ignoring case; NIL if FILE is unreadable."
+  "Return how often WORD occurs in FILE and its comments, ignoring case; NIL if FILE is unreadable."
   (ignore-errors
     (loop with text = (text-of-file file)
           for start = (search word text :test #'char-equal)
@@ -205,7 +205,7 @@ return the line of the definition, or NIL."
           while start count t)))
 
 (defun part-in-file-p (file form part)
-  "True if FILE now contains a form with the operator and name of FORM that contains PART, a list."
+  "True if a form now in FILE has the operator and name of FORM, and contains PART, a list."
   (ignore-errors
     (let ((text (read-file-into-string (native-path file))))
       (loop for (start end) in (definition-positions text form)
@@ -217,7 +217,7 @@ with its operator and name. Signals MISUSE if it is not found."
   (let* ((text (read-file-into-string (native-path file)))
          (place (choose-definition-position (definition-positions text form) ordinal)))
     (unless place
-      (reject-use "~A has no (~(~A ~A~) ...) that can be read." file (first form) (second form)))
+      (reject-use "~A has no readable (~(~A ~A~) ...). Add one." file (first form) (second form)))
     (values (read-from-string text t nil :start (first place)))))
 
 ;;; Digests of texts and forms.

@@ -174,7 +174,7 @@ the error; NIL if there was none."
 ;;; chosen, or CONTINUE for a condition that is no error.
 
 (defstruct (inquiry (:constructor make-inquiry (thread hook)) (:copier nil))
-  "A pending question to the user by the debugger of HOOK (NIL: Lisp's own): a restart for THREAD."
+  "A pending question of the debugger of HOOK (NIL: Lisp's own): which restart for THREAD?"
   (thread nil :read-only t)
   (hook nil :read-only t))
 
@@ -217,7 +217,7 @@ returns true there: its debugger has disconnected."
 
 ;; SWANK sets both of SBCL's hooks, and the function in the first defers to the other.
 (defun enter-outer-debugger (condition hook)
-  "Let the debugger of HOOK, else of *DEBUGGER-HOOK*, else Lisp's, ask the user about CONDITION."
+  "Ask the user about CONDITION in the debugger of HOOK, else of *DEBUGGER-HOOK*, else of Lisp."
   (call-as-debugger (lambda ()
                       (when hook (funcall hook condition hook))
                       (cond (*debugger-hook*

@@ -142,7 +142,7 @@ again by itself, such as a kicker, return that function; else NIL.")
     nil))
 
 (defgeneric recurring-remedy (item)
-  (:documentation "Return a sentence on how to end the calls of ITEM's code, see RECURRING-CODE."))
+  (:documentation "Return a sentence on how to stop ITEM's function, a value of RECURRING-CODE."))
 
 ;;; Calling.
 
@@ -153,7 +153,7 @@ again by itself, such as a kicker, return that function; else NIL.")
  'stop-simulator "Report the error, leave your code and stop the live simulator.")
 
 (define-constant +leave+ "Report it and leave " :test #'string=
-  :documentation "The beginning of the restart ABORT's report in a call of users' code.")
+  :documentation "The beginning of the report of the restart ABORT in users' code.")
 
 (defun thread-stoppable-p (condition)
   "True if the work of this thread can be stopped, regardless of CONDITION."

@@ -37,8 +37,8 @@ OPERATOR that does not fit its lambda list; or NIL.")
     nil))
 
 (defun wrong-keyword-text (parameters arguments)
-  "Return a text about the first wrong keyword in ARGUMENTS: a form in place of a keyword of the
-lambda list PARAMETERS of a macro, or a keyword without a value. Return NIL if no keyword is wrong."
+  "Return a text about the first wrong keyword in ARGUMENTS for the lambda list PARAMETERS: a
+keyword that is unknown or has no value, or another form. Return NIL if no keyword is wrong."
   (let* ((keys (member '&key parameters))
          (before (remove '&optional
                          (ldiff parameters
@@ -78,7 +78,7 @@ wrong keyword, or a form in place of a list. Return NIL if no argument is wrong.
 
 (defun call-parsing-form (form usage parse)
   "Call PARSE, which parses FORM, and then the function that PARSE returns. Signals
-MALFORMED-DEFINITION with USAGE, a form that shows what fits, if FORM does not fit."
+MALFORMED-DEFINITION with USAGE, an example of a valid form, if FORM does not fit."
   (when (or (endless-p form) (not (proper-list-p form)))
     (reject-use-of form "a form that is a proper list"))
   (warn-of-nisp-syntax form)

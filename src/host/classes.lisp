@@ -19,7 +19,6 @@
   (closer-mop:generic-function-name function))
 
 (defun methods-of-generic (function)
-  "Return a list of the methods of the generic function FUNCTION."
   (closer-mop:generic-function-methods function))
 
 (defun methods-on-class (name)
@@ -32,17 +31,16 @@
   (closer-mop:class-precedence-list (closer-mop:ensure-finalized class)))
 
 (defun class-slot-names (class)
-  "Return the names, symbols, of the slots of objects of CLASS."
+  "Return a list of the names, symbols, of the slots of CLASS."
   (mapcar #'closer-mop:slot-definition-name (closer-mop:class-slots class)))
 
 (defun class-slot-types (class)
-  "Return a list (name type) for each slot of objects of CLASS."
   (mapcar (lambda (slot)
             (list (closer-mop:slot-definition-name slot) (closer-mop:slot-definition-type slot)))
           (closer-mop:class-slots class)))
 
 (defun instance-slot-names (class)
-  "Return the names of those slots of CLASS that each instance has for itself."
+  "Return the names of the slots of CLASS that are not shared by its instances."
   (mapcar #'closer-mop:slot-definition-name
           (remove :instance (closer-mop:class-slots class)
                   :key #'closer-mop:slot-definition-allocation :test-not #'eq)))

@@ -120,7 +120,7 @@ other functions, constants and closed-over values. Numbers, characters and strin
        (gethash (native-name namestring) *write-dates*)))
 
 (defun call-recording-file (function path)
-  "Call FUNCTION, which evaluates forms of the file PATH; record its functions as defined in PATH."
+  "Call FUNCTION, which evaluates forms of the file PATH. Record PATH as the file of new functions."
   (let ((name (native-name path)) (errors *error-output*))
     (setf (gethash name *write-dates*) (file-write-date path))
     ;; The summary that a unit was left is useless here: the caller knows.
@@ -156,7 +156,7 @@ file at that time; NIL if FUNCTION was typed."
     (error () (ignore-errors (file-of-code function)))))
 
 (defun files-of-other-definitions (symbol)
-  "Return lists (file write-date), see FUNCTION-FILE, for SYMBOL's definitions except functions."
+  "Return a list (file write-date) for each definition of SYMBOL but functions; see FUNCTION-FILE."
   (loop for kind in '(:variable :constant :symbol-macro :compiler-macro :setf-expander :type :class
                       :structure :condition)
         append (loop for source in (ignore-errors

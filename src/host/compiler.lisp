@@ -40,7 +40,6 @@
     (and table (consp form) (values (gethash form table)))))
 
 (defun has-source-location-p (form)
-  "True if FORM has a source location in the current compilation."
   (and (source-location form) t))
 
 (defun copy-source-location (new old)
@@ -87,11 +86,11 @@ next form. ENCAPSULATED-CONDITION returns the cause of CONDITION."
 ;;; SBCL also records where each top-level form begins in the text.
 
 (defvar *deferred-location* nil
-  "While deferred work is done: a list (form . location) of its form and the location in the text.")
+  "During deferred work, a cons (form . location): its form and the form's location; else NIL.")
 
 (defun source-location-at (path)
-  "Return the location, as LOCATION-IN-TEXT does, of the form with the source path PATH. PATH is a
-list of numbers, the innermost first. Return NIL if the location is unknown."
+  "Return the location, as LOCATION-IN-TEXT does, of the form with the source path PATH; or NIL.
+PATH is a list of numbers, the innermost first."
   (destructuring-bind (&optional top . numbers) (reverse path)
     (let* ((info (value-if-bound (compiler-variable #:*source-info*)))
            (positions (and info
@@ -126,8 +125,8 @@ indices, from 0, of the elements that lead to FORM."
 
 (defstruct (unit (:constructor make-unit (kind outer)) (:copier nil))
   "Files or forms that are compiled or loaded as a whole, within the unit OUTER. TASKS is a table
-of lists with forms as keys. A list has a function to call at the end of the unit, the compiler's
-error context for the form, and the form's location in the text."
+from forms to lists: a function to call at the end of the unit, the compiler's error context for the
+form, and the form's location in the text."
   (kind :load :type (member :load :compilation) :read-only t)
   (outer nil :type (or null unit) :read-only t)
   (files-p nil :type boolean)

@@ -67,7 +67,6 @@ true. ~ and ~/ are the home directory."
     (subseq name (1+ (or (position #\/ name :from-end t) -1)))))
 
 (defun file-size (path)
-  "Return the size of the file PATH in bytes."
   (with-open-file (in path :element-type '(unsigned-byte 8)) (file-length in)))
 
 (defun existing-path (path)
@@ -144,7 +143,6 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
 ;;; Files shared by several processes.
 
 (defun truncate-file (path length)
-  "Truncate the file PATH to LENGTH octets."
   (sb-posix:truncate (absolute-native-name path) length)
   (values))
 
@@ -181,7 +179,6 @@ written, call REFUSED instead of FUNCTION. The system releases the lock when thi
       (sb-posix:close descriptor))))
 
 (defun process-id ()
-  "Return the ID of this process."
   (sb-posix:getpid))
 
 (defun process-running-p (number)
@@ -218,7 +215,7 @@ written, call REFUSED instead of FUNCTION. The system releases the lock when thi
   (uiop:getenv name))
 
 (defun real-microseconds ()
-  "Return the real time in microseconds since some moment. Results of runs must not depend on it."
+  "Return a real time in microseconds, for differences. Results of runs must not depend on it."
   ;; Lisp's own clock has steps of 4000.
   (multiple-value-bind (seconds microseconds) (sb-ext:get-time-of-day)
     (+ (* 1000000 seconds) microseconds)))
@@ -249,9 +246,9 @@ when this process ends for any reason.")
 
 (defun run-child-program (program arguments &rest streams)
   "Run PROGRAM, searched in PATH, with the strings ARGUMENTS, and wait for its end. STREAMS are
-keywords of UIOP:LAUNCH-PROGRAM. PROGRAM is terminated on a non-local exit, or when this process
-ends. Return the exit status of the shell, or NIL if it cannot be run; with :ERROR-OUTPUT :STREAM
-also the error output, a string."
+keyword arguments for UIOP:LAUNCH-PROGRAM. PROGRAM is terminated on a non-local exit, or when this
+process ends. Return the exit status of the shell, or NIL if it cannot be run; with :ERROR-OUTPUT
+:STREAM also the error output, a string."
   (let ((process (handler-case (apply #'uiop:launch-program
                                       (list* "sh" "-c" *child-start-code* "sh" program arguments)
                                       streams)

@@ -24,7 +24,6 @@ WAITING-P is true, only while SBCL waits.")
 
 (declaim (inline interrupts-deferred-p))
 (defun interrupts-deferred-p ()
-  "True if this thread defers interrupts now."
   (and *interrupt-deferral* t))
 
 (defun call-deferring-interrupts (function)
@@ -142,7 +141,7 @@ still evaluate the others. Interrupts are deferred until the end, except in wait
 ;;;; Time limits, and other conditions that are for callers
 
 (deftype time-limit ()
-  "The type of the condition signalled when a form exceeds its time limit, such as WITH-TIMEOUT's."
+  "The type of the condition signalled when a form such as WITH-TIMEOUT exceeds its time limit."
   'sb-ext:timeout)
 
 ;;; FiveAM signals failed checks and continues the test by the restart IGNORE-FAILURE. The caller of
@@ -179,7 +178,6 @@ thread. GIVE-UP may make a non-local exit."
   (internal-name :sb-sys '#:interactive-interrupt))
 
 (defun signal-user-interrupt ()
-  "Signal the error USER-INTERRUPT."
   (error (internal-name :sb-sys '#:interactive-interrupt)))
 
 (defun handle-signal (signal handler)
