@@ -25,7 +25,7 @@
     ("(aref (vector 1 2 3) -1)" "The value -1 is not 0 or more.")
     ("(aref (vector 1 2 3) 'far)" "The value FAR is not a number.")
     ("(elt (vector 1 2 3) 5)" "The value 5 is not from 0 to 2.")
-    ("(elt (vector) 0)" "The value 0 is not in range: nothing is there.")
+    ("(elt (vector) 0)" "The value 0 is not in range: the range is empty.")
     ("(funcall 5)" "The value 5 is not a function.")
     ("(random 0)" "The value 0 cannot be used here.")
     ("(write-to-string 1 :base 50)" "The value 50 is not from 2 to 36.")

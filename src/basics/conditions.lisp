@@ -246,7 +246,7 @@ If TEXT is NIL, let EXIT exit again."
           do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))
 
 (defun warn-of-keywords (operator known options)
-  "Warn of an unknown keyword, or a number in place of a keyword, in OPTIONS for OPERATOR."
+  "Warn if OPTIONS for OPERATOR have an unknown keyword, or a number in place of a keyword."
   (loop for (key) on options by #'cddr
         when (and (keywordp key) (not (member key known)) (not (eq key :allow-other-keys)))
           do (simple-style-warning "~(~A~) has no keyword ~(~S~); it knows ~{~(~S~)~^, ~}."

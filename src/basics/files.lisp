@@ -77,7 +77,7 @@ is of KIND, a keyword, or of no known kind."
 (defun check-kind-of-file (file kind what)
   "Signal MISUSE if FILE exists, is not empty and is not of KIND, called WHAT in the message."
   (when (other-kind-of-file-p file kind)
-    (reject-use "~A is no ~A. The file is unchanged; give another name."
+    (reject-use "~A is not a ~A. The file is unchanged; give another name."
                 (file-name-text file) what)))
 
 ;;;; Replacing a file, or explaining why that is impossible

@@ -57,7 +57,7 @@
              (when filled-p (fill-if-seed-marked words))
              state)))
     (= (random (expt 2 64) (state nil)) (random (expt 2 64) (state t))))
-  "True if this SBCL renews a random state's words at its first roll, so they can be filled then.")
+  "True if this SBCL renews a random state's words at the first roll, when they can be filled.")
 
 (defun seed-state (state short)
   "Seed the random state STATE with SHORT, an integer of 32 bits, and return STATE."

@@ -60,7 +60,7 @@ missing limit is NIL. For other types, return NIL three times."
 Return NIL if TYPE is no range of integers, or DATUM is no integer."
   (multiple-value-bind (least greatest range-p) (limits-of-integer-type type)
     (cond ((not (and range-p (integerp datum))) nil)
-          ((and least greatest (< greatest least)) "in range: nothing is there")
+          ((and least greatest (< greatest least)) "in range: the range is empty")
           ((and least greatest) (format nil "from ~D to ~D" least greatest))
           (greatest (format nil "~D or less" greatest))
           (least (format nil "~D or more" least)))))

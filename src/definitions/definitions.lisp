@@ -143,7 +143,7 @@ form that has another clause. The new form has these restarts, too."
           (instead #'reread-definition))
         (use-value (value)
           :report (lambda (stream)
-                    (format stream "Use another clause of ~A, or another form for it."
+                    (format stream "Replace the clause of ~A, or its whole form."
                             (definition-text definition)))
           :interactive (lambda () (ask-for-form "A clause to use, or a whole form"))
           (instead (lambda (definition) (replace-clause definition value))))))))

@@ -79,7 +79,7 @@ but not a whole number of degrees. (An angle computed with a unit or pi usually 
 (defun degrees-advice (angle)
   "Return a text that says how many turns ANGLE radians are, and what to write for degrees."
   (let ((number (if (integerp angle) angle (format nil "~,2F" angle))))
-    (format nil "~A radians are ~,1F full turns. If ~A degrees are meant, write (* ~A (/ pi 180)), ~
+    (format nil "~A radians are ~,1F full turns. If you mean ~A degrees, write (* ~A (/ pi 180)), ~
                  or at the prompt ~A deg."
             number (/ (abs angle) 2 pi) number number number)))
 
@@ -91,7 +91,7 @@ but not a whole number of degrees. (An angle computed with a unit or pi usually 
 (define-record (journalled-operator (:conc-name operator-)
                                     (:constructor make-operator (name types rest function))
                                     (:predicate operator-p))
-  "A request that a run accepts."
+  "An operator whose requests a run accepts and journals."
   (name nil symbol "the name of the operator, a symbol" :export)
   (types '() list "the types of the arguments")
   (rest nil symbol "the type of all further arguments, or NIL")

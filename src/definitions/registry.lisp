@@ -194,7 +194,7 @@ NAME is a symbol of Common Lisp or of the simulator."
 
 (defun replace-entry (old new registry before value)
   "Add the entry NEW to REGISTRY, in place of the entry OLD or before the object BEFORE. Set NEW's
-variable, if any, to VALUE. Return true, or only NIL if another thread has replaced OLD."
+variable, if any, to VALUE. Return true, or change nothing if another thread has replaced OLD."
   (with-lock (*registries-lock*)
     (when (eq old (entry-to-replace (entry-name new) registry))
       (set-entries registry (entries-including new old before registry))
@@ -255,10 +255,10 @@ in order. SOURCE is a definition's file, :OWN for the simulator's, or NIL for ty
 
 (addition undefine)
 (defun undefine (kind name)
-  "Remove the definition of NAME as KIND, one of MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE,
-KICKER, MANIPULATION, ROBOT, PLAN, POLICY and GOAL, a symbol of any package. The variable of the
-definition becomes unbound. Existing worlds do not change. Return NAME. Signals UNKNOWN-NAME; MISUSE
-for some definitions of the simulator; WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
+  "Remove the definition of NAME as KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
+MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. The variable of the definition
+becomes unbound. Existing worlds do not change. Return NAME. Signals UNKNOWN-NAME; MISUSE for some
+definitions of the simulator; WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
   (check-argument undefine name (typep name '(or symbol string)) "the name of a definition")
   (let ((registry (find-registry kind)))

@@ -117,7 +117,7 @@ of the function that it calls; else NIL. The layer that defines commands has a m
 (defvar *dispatch-remedies* '() "Lists (character remedy) for # characters of other readtables.")
 
 (defun note-dispatch-character (character remedy)
-  "Register REMEDY, a sentence for the error that Lisp cannot read # followed by CHARACTER."
+  "Register the sentence REMEDY for the error that Lisp cannot read # followed by CHARACTER."
   (pushnew (list character remedy) *dispatch-remedies* :test #'equal))
 
 (defun unreadable-syntax-text (condition)
@@ -183,7 +183,7 @@ or NIL. The layer that defines fluents has methods.")
         ((or (keywordp form) (stringp form)) form)))
 
 (defun compared-words (form)
-  "If FORM compares a form with constant words, return a list of the words, and the form; else NIL."
+  "If FORM compares a subform with constant words, return a list of them and the subform; else NIL."
   (let ((arguments (rest form)))
     (flet ((is (count &rest names)
              (and (member (first form) names)

@@ -79,7 +79,7 @@ Later errors now in QUEUE will not be signalled."
 
 (defun signal-pending-error (queue)
   "If QUEUE has a pending error of users' code, signal it. Return true if a handler continues after
-the error; NIL if there was none."
+the error; NIL if there was no error."
   (let ((trouble (take-unsignalled-error queue)))
     (when trouble
       (with-simple-restart (continue "Let the other ticks pass.")

@@ -139,7 +139,7 @@ LAMBDA-LIST, or BODY signals an error, the use signals MALFORMED-DEFINITION."
   (if (= 1 (length forms)) (first forms) (cons 'progn forms)))
 
 (defun intended-test (form)
-  "If FORM, a test, is quoted data or a function, return a list of the form meant; else NIL."
+  "If FORM, a test, is quoted data or a function, return a list of the intended form; else NIL."
   (typecase form
     ((cons (eql quote) (cons (not null) null))
      (let ((data (second form)))

@@ -53,7 +53,7 @@ and the hook that another program had set before.")
 
 ;; The hook of an editor's server stays set when the editor disconnects.
 (defvar *editor-gone-p* (constantly nil)
-  "A function that returns true if the debugger hook is that of a disconnected editor's server.")
+  "A function that returns true if the debugger hook belongs to a disconnected editor's server.")
 
 (defun disconnected-hook-p (hook)
   "True if HOOK is not the simulator's, and belongs to an editor that has disconnected."

@@ -10,7 +10,7 @@
   (internal (:sb-kernel #:dynamic-usage)))
 
 (defun octets-before-collection ()
-  "Return the bytes that can be allocated before SBCL's next collection; a large number if unknown."
+  "Return how many bytes can be allocated before the next collection; a large number if unknown."
   (let ((trigger (ignore-errors
                   (internal (:sb-sys #:sap-ref-word)
                             (internal (:sb-sys #:foreign-symbol-sap) "auto_gc_trigger" t)
