@@ -33,8 +33,7 @@
   (is (not (search "ARS" (hint-to-variable (stranger "NOBODYS-NAME"))))))
 
 (test names.of-plans-without-a-quote-are-hinted-at
-  (is-true (has-words-p (hint-to-variable 'turn-once)
-                        "It is the name of a plan: write 'turn-once."))
+  (is-true (has-words-p (hint-to-variable 'turn-once) "is the name of a plan: write 'turn-once."))
   (is-true (has-words-p (basics::lisp-error-text
                          (make-condition 'unbound-variable :name 'turn-once))
                         "has no value. It is the name of a plan: write 'turn-once.")))
