@@ -117,6 +117,19 @@
                       (is (search (string-downcase name) (subseq text offset (+ offset 60)))
                           "~A ~A at ~D" kind name offset)))))))))
 
+(test sources.begin-where-the-forms-of-definitions-begin
+  (call-with-users-file
+   (lambda (path)
+     (let ((text (base:read-file-into-string path)) (count 0))
+       (loop for (name) in *users-names*
+             do (loop for (nil position operator) in (definitions::definition-sources
+                                                      (users-name name))
+                      do (incf count)
+                         (is (eql position (search (format nil "(~(~A~)" operator) text
+                                                   :start2 position))
+                             "~A at ~D" name position)))
+       (is (< 3 count))))))
+
 (defun source-path (source)
   (uiop:symbol-call :sb-introspect '#:definition-source-pathname source))
 
