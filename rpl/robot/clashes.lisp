@@ -8,7 +8,7 @@
 ;;; the same. No time passes. After *MOST-TAKEOVERS* in a tick each further one ends the reaction.
 
 (defparameter *most-takeovers* 100
-  "How often plans may take one part of the robot from each other before time has to pass.")
+  "The number of times that plans may take a part of the robot from each other in one tick.")
 
 (defconstant +takeover-warning-ticks+ 5
   "After this many ticks, a second warning names plans that still take a part from each other.
@@ -51,8 +51,8 @@ each other for ever. The text does not depend on their order."
                              "valve: see RPL-ROBOT-VALVE."))))
 
 (defun count-takeover (interface resource older newer)
-  "Count that the task NEWER, or NIL, has taken RESOURCE over from the task OLDER, or NIL. After too
-many takeovers, let time pass."
+  "Count that the task NEWER has taken over RESOURCE from the task OLDER. NIL stands for code
+outside of plans. After too many takeovers, let time pass."
   (let ((count (takeover-entry interface resource))
         (runner (interface-runner interface))
         (same-plan-p (and older newer (eq (task-top older) (task-top newer)))))
@@ -121,8 +121,8 @@ returns the settings of fluents at that end. Return NIL if no fluent is pulsed."
          (operator-called-p (node-form (frame-node frame)) "PAR" "PAR-LOOP" "PARTIAL-ORDER"))))
 
 (defun reacting-to-events-p (task whole)
-  "True if TASK runs a reaction to an event, as in WHENEVER. TASK is a part of WHOLE, or WHOLE is
-NIL; reactions outside of WHOLE do not count."
+  "True if TASK runs a reaction to an event, as in WHENEVER. Reactions outside of WHOLE, a task
+around TASK or NIL, do not count."
   (loop for each in (lineage task)
         until (eq each whole)
         thereis (loop for frame in (frame-chain (task-frame each))
@@ -178,7 +178,7 @@ NIL; reactions outside of WHOLE do not count."
 ;;; A task that gives one command after the other has forgotten to wait, or waits for a tick only.
 
 (defun previous-step (task)
-  "Return the form before the current form of TASK in the innermost SEQ that TASK is in."
+  "Return the form before the current form of TASK in the innermost SEQ around this form."
   (dolist (frame (frame-chain (task-frame task)))
     (let ((form (node-form (frame-node frame))))
       (when (operator-called-p form "SEQ")
@@ -186,8 +186,8 @@ NIL; reactions outside of WHOLE do not count."
           (return (first (last (ldiff (rest form) (member at form :test #'equal))))))))))
 
 (defun ticks-before-replacement (older newer)
-  "If NEWER cut short OLDER, an action of the same task, most likely by mistake, return how many
-ticks OLDER had: 0 or 1. Return NIL if that may be intended, as in a reaction to an event."
+  "Return how many ticks, 0 or 1, OLDER had before NEWER, an action of the same task, cut it short.
+Return NIL if that was probably intended, as in a reaction to an event."
   (let ((task (action-task older)) (ticks (- (action-tick newer) (action-tick older))))
     (and task
          (eq task (action-task newer))

@@ -79,7 +79,8 @@ pulsed, and never set, its documentation begins with the word Pulsed. Return the
   (reverse (loop for (variable kind) in *fluent-variables* collect (list variable kind))))
 
 (defun make-fluents (robot)
-  "Give all fluent variables new fluents, one for ROBOT or for each of its parts (reading 183)."
+  "Set each fluent variable to a new fluent for ROBOT, or to a vector with a new fluent for each
+part of the variable's kind (reading 183)."
   (let ((kinds (mapcar #'type-of (robot-parts robot))))
     (loop for (variable kind name) in *fluent-variables*
           do (setf (symbol-value variable)
@@ -90,7 +91,7 @@ pulsed, and never set, its documentation begins with the word Pulsed. Return the
 ;;; Arguments may be fluents; what counts is their value. Parts are given by index, or as such.
 
 (defun find-part (kind index operator)
-  "Return the part of KIND of the plans' robot that INDEX stands for. INDEX is the number of the
+  "Return the part of the plans' robot that has this KIND and INDEX. INDEX is the number of the
 part, the part itself, or a fluent with either value."
   (let* ((index (fluent-value index))
          (parts (parts-of-kind (rpl-robot) kind)))

@@ -21,7 +21,7 @@
            (simulation-participants simulation)))
 
 (defun same-era-p (task interface)
-  "TASK is of another run. True if INTERFACE's task with the same number is TASK's counterpart."
+  "True if the counterpart of TASK, a task of another run, has the same number in INTERFACE."
   (let ((number (task-serial task)))
     (eq (era-of-task-number number (runner-client (task-runner task)))
         (era-of-task-number number interface))))
@@ -36,7 +36,7 @@
 (defun counterpart-of-task (task simulation)
   "SIMULATION is a fork of the run of TASK, or replaces that run in a rewind. Return the counterpart
 of TASK there; TASK itself if the counterpart is over. Signals MISUSE if the run was rewound to
-before the start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
+before the start of TASK, or if RPL-INIT-ROBOT was called since."
   (let* ((client (runner-client (task-runner task)))
          (interface (interface-of-robot (interface-robot client) simulation)))
     (cond ((and interface (same-era-p task interface))
@@ -51,12 +51,12 @@ before the start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
 ;;; Where a run is rewound.
 
 (defun eras-until (number eras)
-  "Return the oldest of ERAS, and the others in which tasks with numbers up to NUMBER began."
+  "Return a list: those of ERAS in which tasks with numbers up to NUMBER began, and the oldest era."
   (append (remove-if (lambda (era) (>= (cdr era) number)) (butlast eras))
           (last eras)))
 
 (defun same-init-call-p (interface other)
-  "True if the same call of RPL-INIT-ROBOT has begun INTERFACE and OTHER, interfaces of two runs."
+  "True if one call of RPL-INIT-ROBOT has made INTERFACE and OTHER, interfaces of two runs."
   (eq (car (first (last (interface-eras interface))))
       (car (first (last (interface-eras other))))))
 
@@ -83,7 +83,7 @@ before the start of TASK, or if RPL-INIT-ROBOT has begun plans anew since."
       (with-plans (interface) (react-fully interface)))))
 
 (defun record-plan-action (interface function &rest arguments)
-  "Record in the run of INTERFACE an action that a call of FUNCTION with ARGUMENTS repeats."
+  "Record an action in the run of INTERFACE. FUNCTION, called with ARGUMENTS, repeats the action."
   (apply #'record-outside-act (interface-simulation interface) function arguments))
 
 (defun repeat-call (word arguments serial)
@@ -145,7 +145,7 @@ Return FLUENT itself if no variable holds FLUENT."
 (add-listener *rewind-hooks* drop-fluents-of-old-run)
 
 (defun copy-fluents-back (old new)
-  "Set the fluents of OLD, a rewound run, to their values in NEW, its replacement, which is over."
+  "Copy the values of fluents to OLD, a rewound run, from NEW, its replacement, which is over."
   (let ((from (realm-of-simulation new)) (realm (realm-of-simulation old)))
     (unless (or (null realm) (eq from realm)) (copy-back-values from realm))))
 

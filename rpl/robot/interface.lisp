@@ -213,7 +213,7 @@ you can meanwhile answer a plan that waits in a debugger."
 ;;; Which interface.
 
 (defun interface-valid-p (interface)
-  "True if the robot of INTERFACE is still in its world, and the world in the same simulation."
+  "True if the robot of INTERFACE is still in its world, and the simulation still has this world."
   (let ((robot (interface-robot interface))
         (simulation (interface-simulation interface)))
     (and (not (interface-closed-p interface))

@@ -60,7 +60,7 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
   (values))
 
 (defun searching-camera (interface)
-  "Return the camera of a search for designators that plans of INTERFACE wait for, or NIL."
+  "Return a camera that is searching for designators for plans of INTERFACE, or NIL."
   (flet ((search-p (action)
            (and (action-open-p action)
                 (find-if (lambda (spec)
@@ -111,7 +111,7 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
                                    (:when form clause...)")))))
 
 (defun clause-fluents (clauses &optional (kinds '(:set :error :pulse)))
-  "Return the variables, perhaps repeated, of the fluents that CLAUSES of KINDS set."
+  "Return the fluent variables in those of CLAUSES that have KINDS, perhaps with duplicates."
   (loop for (kind . more) in clauses
         append (cond ((member kind kinds) (list (first more)))
                      ((eq :when kind) (clause-fluents (rest more) kinds)))))

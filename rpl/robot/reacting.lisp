@@ -77,7 +77,7 @@ not served."))
         (not (eq answer :later))))))
 
 (defun react-and-serve (interface)
-  "Let the plans of INTERFACE react and serve their wishes, in turn, until nothing is left to do in
+  "Let the plans of INTERFACE react, then serve a wish, and so on until nothing is left to do in
 this tick. Return :IDLE, or :BUDGET if work is left for the next tick."
   (loop
     (let ((outcome (react-to-all (interface-runner interface))))
@@ -87,7 +87,8 @@ this tick. Return :IDLE, or :BUDGET if work is left for the next tick."
 ;;; For methods of SERVE-WISH.
 
 (defun fork-resting-simulation (interface)
-  "Return a fork of the simulation of INTERFACE, whose plans rest and are held by the caller."
+  "Fork the simulation of INTERFACE, and return the fork. The plans rest, and the caller holds
+them."
   (in-any-case
     (progn (setf (interface-resting-p interface) t)
            (fork-simulation (interface-simulation interface)))
@@ -153,7 +154,7 @@ their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a re
                 (t outcome))))))
 
 (defun finish-closing (interface)
-  "Finish the plans of INTERFACE, which react no more, and mark INTERFACE as closed."
+  "Finish the plans of INTERFACE, which no longer react, and mark INTERFACE as closed."
   (unless (interface-closed-p interface)
     (in-any-case
       (close-runner (interface-runner interface))

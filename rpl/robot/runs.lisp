@@ -8,7 +8,7 @@
 
 (addition *plan-limit*)
 (defparameter *plan-limit* 100000
-  "How many ticks may pass in a headless run before RUN-PLAN gives a plan up.")
+  "The number of ticks after which RUN-PLAN gives up a plan in a headless run.")
 
 (defun robot-to-drive ()
   "Return the robot of the current simulation that plans drive by default: the only robot, or the
@@ -85,7 +85,7 @@ as ticks pass in a headless run, and in the plans' thread in a live run. Signals
       (warn-if-no-ticks-pass plan interface))))
 
 (defconstant +longest-report+ 4000
-  "How many characters a report of plans has at most.")
+  "The largest number of characters in a report of plans.")
 
 (defun ended-by-itself-p (task)
   (and (task-over-p task) (not (eq :evaporated (task-state task)))))
@@ -175,7 +175,7 @@ calls from outside can wake the plans."
 
 ;; A failure is true, so a program that only asks whether there is a value takes it for success.
 (defun warn-of-failure (interface task)
-  "Warn, once for each plan of a run, that TASK, which RUN-PLAN ran for a program, has failed."
+  "Warn, once for each plan of a run, that TASK has failed, a plan that a program ran by RUN-PLAN."
   (let ((simulation (interface-simulation interface)))
     (funcall *on-plan-failure* task)
     (unless (or *asker*
@@ -244,7 +244,7 @@ example if the run is over before the plan begins."
       (with-plans (interface) (react-fully interface)))))
 
 (defun repeat-plan-end (subject)
-  "In a repeated run, end SUBJECT as in the original run: a task, or all plans of a plan runner."
+  "End SUBJECT, a task or all plans of a plan runner, in a repeated run as in the original run."
   (end-plans-of-interface (usable-interface) (and (task-p subject) subject)))
 
 (defun plan-ending-p (task)
@@ -297,10 +297,10 @@ or if the run was rewound to a tick before TASK began."
 ;;; The name of a plan that is not quoted is a variable to Lisp.
 
 (defun warn-of-unquoted-plan (operator form environment)
-  "Warn if FORM, the plan argument in a call of OPERATOR, is the name of a plan and no variable."
+  "Warn if FORM, the plan argument in a call of OPERATOR, is the name of a plan, not a variable."
   (when (and form (symbolp form) (not (known-variable-p form environment)))
     (when (find-procedure form nil)
-      (warn-of-style "~A: ~A is a plan and no variable. Quote its name: '~:*~A"
+      (warn-of-style "~A: ~A is a plan, not a variable. Quote its name: '~:*~A"
                      operator form))))
 
 (define-compiler-macro run-plan (&whole form &rest arguments &environment environment)

@@ -35,7 +35,7 @@ thread, or a plan has called this function, the plans end as soon as they can."
 
 ;; The prompt sets it to a function that returns the robot that it commands.
 (defvar *robot-to-drive* (constantly nil)
-  "A function that returns the robot that plans drive if there are several robots, or NIL.")
+  "A function that returns a robot or NIL: which of several robots plans drive by default.")
 
 (defun commanded-robot ()
   "Return the robot that the prompt of this thread commands, or NIL."

@@ -60,7 +60,7 @@ running; otherwise end the plan between two steps."
 
 (defun watch-plans (interface thread calls ended)
   "Watch THREAD, the plans' thread, until the semaphore ENDED is signalled at its end. Warn of plans
-that block it, and end them if this was requested. CALLS tells which users' code it runs."
+that block THREAD, and end them on request. CALLS says which users' code THREAD runs."
   (loop with earlier = nil and stuck = 1 and busy = 1
         until (wait-on-semaphore ended (/ (hog-seconds) 2))
         do (let ((sample (take-thread-sample interface thread)))

@@ -57,7 +57,8 @@ cleanup. OUTCOME returns the settings of fluents for an answer."
 ;;; Answers.
 
 (defun final-answer-p (command err)
-  "True if an answer with ERR is COMMAND's last. A track is answered at its beginning and its end."
+  "True if an answer with ERR is the last answer to COMMAND. A track is answered at its beginning
+and its end."
   (or err (not (trait-p :begins command))))
 
 (defun add-answer (answer interface)
@@ -116,7 +117,8 @@ time is carried out first, and a command in the background goes on."
                             (plain-settings settings)))))))
 
 (defun post-answer (interface action err results)
-  "In the simulator's thread, post the answer to ACTION, ERR and RESULTS, to INTERFACE's plans."
+  "Post an answer to ACTION, with ERR and RESULTS, from the simulator's thread to the plans of
+INTERFACE."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (action-outcome action) (action-resource action) err results))
@@ -211,7 +213,7 @@ because the robot is gone, end the plan at work."
 ;; Another thread may end the run at any time, and the robot may be in another run by now: then the
 ;; end of the run has interrupted the command, or will.
 (defun withdraw-action (action interface)
-  "Have the command of ACTION interrupted, unless the run of INTERFACE is over."
+  "Interrupt the command of ACTION, unless the run of INTERFACE is over."
   (let ((simulation (interface-simulation interface)))
     (flet ((over-p ()
              (or (simulation-over simulation)
@@ -222,7 +224,7 @@ because the robot is gone, end the plan at work."
 
 ;; Commands that were issued to clean up go on.
 (defun interrupt-actions (interface task)
-  "Interrupt the commands in progress that the top-level TASK, which has not succeeded, has issued."
+  "Interrupt the commands in progress of the top-level TASK, which has failed or evaporated."
   (dolist (action (interface-actions interface))
     (when (and (action-open-p action)
                (action-task action)

@@ -8,7 +8,7 @@
 
 (defparameter *fluent-setters*
   '(set-value pulse (setf fluent-value) begin-plan)
-  "The names of functions by which code may change a fluent, or have a plan do so.")
+  "The names of functions that change fluents, or begin plans that may change fluents.")
 
 (defun may-set-fluents-p (object seen)
   "True if OBJECT, found in the code of a function, may change a fluent, directly or through
@@ -24,7 +24,7 @@ functions that OBJECT calls. SEEN is a table of objects that have been examined.
          (may-set-fluents-p (fdefinition object) seen))))
 
 (defvar *kicker-sets-fluents-cache* (make-hash-table :test 'eq :weakness :key :synchronized t)
-  "A table of alists by interface. Each alist says of kickers whether they may change fluents.")
+  "A table of alists by interface. Each alist says which kickers may change fluents.")
 
 (defun kicker-sets-fluents-p (kicker interface)
   (let ((known (assoc kicker (gethash interface *kicker-sets-fluents-cache*) :test #'eq)))
@@ -48,10 +48,11 @@ functions that OBJECT calls. SEEN is a table of objects that have been examined.
 (defparameter *harmless-error-codes*
   '(:interrupt :not-moving :goto-local :already-tracking
     :lost-track :grasping :not-grasping :grasp-lost :not-inside :bin-open)
-  "Error codes that are no failures, because plans use them, as in the manual's appendix D.")
+  "Error codes that do not count as failures, because plans use them, as in the manual, appendix
+D.")
 
 (defun command-failed-p (command err)
-  "True if COMMAND, which ended with ERR, could not do what it is for."
+  "True if ERR, the error code of COMMAND at its end, means a failure."
   (and err
        (not (member err *harmless-error-codes*))
        (not (member err (command-expected command)))))
@@ -77,7 +78,7 @@ ERR. PART is the index of the part; NIL stands for the robot."
 
 (defun record-unread-end (interface action err)
   "Record that ACTION of INTERFACE has ended with ERR, before plans can read ERR. The record
-supersedes that of an earlier end of the same command."
+replaces the record of an earlier end of the same command."
   (let ((command (action-name action)) (task (action-task action))
         (part (part-number (action-resource action))))
     (when (or err (interface-unread interface))
