@@ -134,7 +134,7 @@
                          (driver:rpl-camera-track
                           0 (first (rpl:fluent-value
                                     (svref driver:camera-designators* 0))))))))))
-    (is-true (has-words-p (told) "designator is NIL" "the search that is still under way"
+    (is-true (has-words-p (told) "designator is NIL" "The search for it is still under way"
                           "(wait-for (vref camera-input* 0)) first"))
     (is (not (search "under way"
                      (told '(rpl:wait-for (svref driver:camera-input* 0))))))))
@@ -190,7 +190,7 @@
   (is-true (has-words-p (rover-writes ()
                           (driver:run-plan (plan-of (rpl:handle-failure ((error () (return 1)))
                                                       (rpl:fail :class :lost)))))
-                        "a clause is for error, which matches errors of Lisp" "write :lost or T")))
+                        "a clause is for error, which matches Lisp errors" "write :lost or T")))
 
 (test plans.that-fail-live-are-told-to-programs
   (live (simulation)

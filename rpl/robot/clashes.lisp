@@ -33,11 +33,11 @@ each other for ever. The text does not depend on their order."
   (when (and older newer (> (task-serial older) (task-serial newer)))
     (rotatef older newer))
   (if (eq older newer)
-      (format nil "~A takes ~A from itself for ever: each time its command is interrupted it ~
+      (format nil "~A takes ~A from itself for ever: each time its command is interrupted, it ~
                    issues another command"
               (taker-text newer) resource)
       (format nil "~A and ~A take ~A from each other for ever: each time the command of a task is ~
-                   interrupted the task issues another"
+                   interrupted, the task issues another"
               (taker-text older) (taker-text newer) resource)))
 
 (defun warn-of-takeovers (interface text)
@@ -47,8 +47,8 @@ each other for ever. The text does not depend on their order."
     (unless (and said (< tick (+ (cdr said) +takeover-warning-ticks+)))
       (setf (interface-warned interface)
             (acons text tick (remove said (interface-warned interface))))
-      (queue-notable-warning text ". They continue in each tick. Let one at a time own the robot's "
-                             "valve: see RPL-ROBOT-VALVE."))))
+      (queue-notable-warning text ". The takeovers continue in each tick. Let one task at a time "
+                             "own the robot's valve: see RPL-ROBOT-VALVE."))))
 
 (defun count-takeover (interface resource older newer)
   "Count that the task NEWER has taken over RESOURCE from the task OLDER. NIL stands for code

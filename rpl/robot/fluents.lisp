@@ -79,8 +79,7 @@ pulsed, and never set, its documentation begins with the word Pulsed. Return the
   (reverse (loop for (variable kind) in *fluent-variables* collect (list variable kind))))
 
 (defun make-fluents (robot)
-  "Set each fluent variable to a new fluent for ROBOT, or to a vector with a new fluent for each
-part of the variable's kind (reading 183)."
+  "Set fluent variables to new fluents for ROBOT, or to vectors of one for each part (reading 183)."
   (let ((kinds (mapcar #'type-of (robot-parts robot))))
     (loop for (variable kind name) in *fluent-variables*
           do (setf (symbol-value variable)
@@ -103,7 +102,7 @@ part, the part itself, or a fluent with either value."
                                       kind (rpl-robot) (length parts)))))))
 
 (defmacro define-accessors (&body definitions)
-  "Define accessors of the plans' robot and of its parts: (name kind reader documentation)."
+  "Define accessors of the plans' robot and its parts, each as (name kind reader documentation)."
   `(progn
      ,@(loop for (name kind reader text) in definitions
              for part-p = (not (eq 'robot kind))

@@ -44,7 +44,7 @@ before the start of TASK, or if RPL-INIT-ROBOT was called since."
           ((eq (interface-simulation client) (latest-successor (interface-simulation client))) task)
           (t (reject-use "The task ~D, ~A, belongs to a run that was rewound, and is not in the ~
                           run that goes on: it began after the tick to which the run was rewound, ~
-                          or RPL-INIT-ROBOT has begun plans anew since. (plans) lists the plans ~
+                          or RPL-INIT-ROBOT was called since. (plans) lists the plans ~
                           under way."
                          (task-serial task) (task-label task))))))
 

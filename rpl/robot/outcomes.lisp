@@ -75,8 +75,8 @@ and the results, returns the settings of fluents at the end of COMMAND. Return n
                      (same-name-p type 'designator)
                      (searching-camera interface))))
     (if camera
-        (format nil "a designator, which the search that is still under way has yet to find: ~
-                     (wait-for (vref camera-input* ~D)) first"
+        (format nil "a designator. The search for it is still under way. First wait for its ~
+                     end: (wait-for (vref camera-input* ~D))"
                 (part-index camera))
         (argument-type-text type argument))))
 
@@ -190,8 +190,8 @@ whose name follows RPL-: by which function, or how to define one; NIL if there i
            (let ((*print-case* :downcase))
              (format nil "no fluent yet reports the end of the command ~A to plans. Define a ~
                           fluent: (define-fluents ~A (my-fluent* \"Pulsed at its end.\")) and ~
-                          (define-outcome (~2:*~A~*) ~:A (:pulse my-fluent*)), names of the ~
-                          package ars-magna.rpl-robot, with a name of yours for my-fluent*."
+                          (define-outcome (~2:*~A~*) ~:A (:pulse my-fluent*)). Choose ~
+                          a name for my-fluent*; the others are of package ars-magna.rpl-robot."
                      (string-downcase (command-name command))
                      (spec-type (command-resource command))
                      (mapcar #'spec-name (command-results command))))))))

@@ -18,9 +18,9 @@ TASK, a caller outside of plans wants a fork."
   (interface nil (or null interface) "the interface that has the wish" :export))
 
 (defgeneric serve-wish (wish)
-  (:documentation "Serve WISH and let its task go on by GRANT-WISH. Methods are called while all
-plans of the interface rest. If a method signals an error, the task fails. Return :LATER if WISH was
-not served."))
+  (:documentation "Serve WISH, and continue its task by GRANT-WISH. Called while all plans of the
+interface rest. If a method signals an error, the task fails. Return :LATER if WISH was not
+served."))
 
 (defconstant +most-wishes+ 100
   "The largest number of wishes served in a tick, so that endless wishes do not stop time.")
@@ -87,8 +87,7 @@ this tick. Return :IDLE, or :BUDGET if work is left for the next tick."
 ;;; For methods of SERVE-WISH.
 
 (defun fork-resting-simulation (interface)
-  "Fork the simulation of INTERFACE, and return the fork. The plans rest, and the caller holds
-them."
+  "Return a fork of the simulation of INTERFACE. The plans rest, and the caller holds them."
   (in-any-case
     (progn (setf (interface-resting-p interface) t)
            (fork-simulation (interface-simulation interface)))

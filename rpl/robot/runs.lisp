@@ -175,7 +175,7 @@ calls from outside can wake the plans."
 
 ;; A failure is true, so a program that only asks whether there is a value takes it for success.
 (defun warn-of-failure (interface task)
-  "Warn, once for each plan of a run, that TASK has failed, a plan that a program ran by RUN-PLAN."
+  "TASK, which RUN-PLAN ran for a program, has failed. Warn of this once for each plan of a run."
   (let ((simulation (interface-simulation interface)))
     (funcall *on-plan-failure* task)
     (unless (or *asker*
@@ -255,7 +255,6 @@ example if the run is over before the plan begins."
         (and interface (member task (interface-ends-requested interface)) t))))
 
 (defun end-task (task)
-  "Evaporate TASK, of any runner: at once if it belongs to the current plans."
   (let ((interface (and (task-runner task) (runner-client (task-runner task)))))
     (cond ((or (null (task-runner task)) (task-over-p task)))
           ((null interface) (stop-plan (task-runner task) task))

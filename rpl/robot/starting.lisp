@@ -38,7 +38,6 @@ thread, or a plan has called this function, the plans end as soon as they can."
   "A function that returns a robot or NIL: which of several robots plans drive by default.")
 
 (defun commanded-robot ()
-  "Return the robot that the prompt of this thread commands, or NIL."
   (and *simulation* (funcall *robot-to-drive*)))
 
 (defun check-world-to-drive (robot)

@@ -29,7 +29,6 @@
        (eql (sample-rests sample) (sample-rests earlier))))
 
 (defun stuck-since-p (sample earlier)
-  "True if the plans were in the same step at EARLIER and SAMPLE."
   (and (busy-since-p sample earlier)
        (eql (sample-steps sample) (sample-steps earlier))))
 

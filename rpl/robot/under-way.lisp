@@ -57,8 +57,7 @@ cleanup. OUTCOME returns the settings of fluents for an answer."
 ;;; Answers.
 
 (defun final-answer-p (command err)
-  "True if an answer with ERR is the last answer to COMMAND. A track is answered at its beginning
-and its end."
+  "True if ERR comes with the last answer to COMMAND: a track is answered at its beginning and end."
   (or err (not (trait-p :begins command))))
 
 (defun add-answer (answer interface)
@@ -117,8 +116,7 @@ time is carried out first, and a command in the background goes on."
                             (plain-settings settings)))))))
 
 (defun post-answer (interface action err results)
-  "Post an answer to ACTION, with ERR and RESULTS, from the simulator's thread to the plans of
-INTERFACE."
+  "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of INTERFACE."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (action-outcome action) (action-resource action) err results))
@@ -159,8 +157,8 @@ INTERFACE."
     (and task (eq :running (task-state task)) task)))
 
 (defun interrupt-older-actions (interface resource &key except (test #'interrupted-by-command-p))
-  "Report to plans the actions on RESOURCE that the running plan has interrupted: the actions that
-pass TEST, except the action EXCEPT. Do nothing outside of plans."
+  "Report to plans the actions on RESOURCE that the running plan has interrupted: those that pass
+TEST, except the action EXCEPT. Do nothing outside of plans."
   (when (reacting-p interface)
     (apply-answers-on resource interface except)
     (dolist (action (interface-actions interface))

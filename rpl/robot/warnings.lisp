@@ -48,8 +48,7 @@ functions that OBJECT calls. SEEN is a table of objects that have been examined.
 (defparameter *harmless-error-codes*
   '(:interrupt :not-moving :goto-local :already-tracking
     :lost-track :grasping :not-grasping :grasp-lost :not-inside :bin-open)
-  "Error codes that do not count as failures, because plans use them, as in the manual, appendix
-D.")
+  "Error codes that are not failures, because plans use them, as in appendix D of the manual.")
 
 (defun command-failed-p (command err)
   "True if ERR, the error code of COMMAND at its end, means a failure."
@@ -107,8 +106,8 @@ replaces the record of an earlier end of the same command."
     (when (and unread (not (message-queue-listener *message-queue*)))
       (warn-once (list :unread (task-label task)) (simulation-world simulation)
                  (format nil "The plan ~A succeeded, though its command rpl-~(~A~) ended with ~S, ~
-                              and did not look at ~A. After the wait write (if (fluent-value ~
-                              ~:*~A) (fail ...)), or another reaction to the error."
+                              and the plan did not look at ~A. After the wait write (if ~
+                              (fluent-value ~:*~A) (fail ...)), or another reaction to the error."
                          (task-label task) (unread-command unread) (unread-err unread)
                          (fluent-form-text (first (last (unread-fluents unread)))))
                  :notable (or (live-p simulation) (lambda () (still-unread-p unread)))))))
@@ -182,7 +181,7 @@ replaces the record of an earlier end of the same command."
                (simulation-world simulation)
                (list "At tick " (simulation-tick simulation) " " (stranded-task-text task parts)
                      (if (and (live-p simulation) (notany #'waits-for-robot-only-p parts))
-                         " So it waits until you do, as from a REPL."
+                         " Only you can wake the plan, for example from a REPL."
                          ""))
                :notable (or (live-p simulation)
                             ;; Whether they still wait for that at the end.

@@ -11,7 +11,7 @@
 (addition task-stack)
 (defun task-stack (task)
   "Return a list of the expressions that TASK is evaluating, innermost first: one for each call of a
-plan in progress. Those of the tasks around TASK are left out. Return () when TASK is over."
+plan in progress. Expressions of the tasks around TASK are left out. Return () when TASK is over."
   (check-argument task-stack task (task-p task) "a task, as begin-plan returns")
   (note-task-seen task)
   (forms-under-way (task-frame task)))
@@ -30,8 +30,8 @@ plan in progress. Those of the tasks around TASK are left out. Return () when TA
         thereis (node-names (frame-node each))))
 
 (defun level-variables (environment names)
-  "Return lists (name value) of the variables with NAMES in ENVIRONMENT, one level. Of variables
-with the same name, only the last is included."
+  "Return lists (name value) of the variables with NAMES in ENVIRONMENT, a single level. Of
+variables with the same name, only the last is included."
   (loop for (name . later) on names
         for index from 1 below (length environment)
         when (and (symbol-package name) (not (member name later)))
@@ -60,8 +60,8 @@ variable is a list (name value)."
             (form-text (node-form (frame-node frame)) 40))))
 
 (defun visible-variables-by-environment (frames)
-  "Return a table. Each key is an environment of FRAMES; its value lists those variables of the
-environment that the innermost frame with it sees. FRAMES begin with the innermost frame."
+  "Return a table from the environments of FRAMES to lists of variables: those that the innermost
+frame of an environment sees in this environment. FRAMES begin with the innermost frame."
   (let ((table (make-hash-table :test 'eq)))
     (dolist (frame frames table)
       (loop for (environment . variables) in (visible-levels frame)

@@ -22,7 +22,7 @@
   (or (find-if (lambda (entry)
                  (and (= number (trace-entry-task entry)) (eq :start (trace-entry-event entry))))
                trace)
-      (reject-use "There was no task ~A in this trace." number)))
+      (reject-use "This trace has no task ~A. (plan-trace) returns its entries." number)))
 
 (defun ancestor-entries (number trace)
   "Return the entries of TRACE for the starts of task NUMBER and tasks around it, innermost first."
@@ -32,7 +32,7 @@
         collect start))
 
 (defun descendant-test (number trace)
-  "Return a predicate that is true of the numbers of the task NUMBER of TRACE and of all its parts."
+  "Return a predicate on numbers of tasks: true for the task NUMBER of TRACE and all its parts."
   (let ((members (make-hash-table)))
     (setf (gethash number members) t)
     (loop for entry across trace
@@ -48,7 +48,7 @@
 (defun trace-of (which &key event form runner)
   "Return a list of the trace entries of WHICH and its parts, in order. WHICH is a task, which may
 be over, or its number; NIL for all. If EVENT is an event or a list of events, return only entries
-of these. If FORM names an operator, return only entries at its calls. RUNNER is a plan runner, by
+of these. If FORM names an operator, return only entries at calls of it. RUNNER is a plan runner, by
 default the task's, or else the one in use. Signals MISUSE if no trace was kept."
   (multiple-value-bind (trace number) (trace-to-read which runner)
     (let ((member-p (if number (descendant-test number trace) (constantly t))))
@@ -108,7 +108,7 @@ Each element is a list of number, name or NIL, and expression. See TRACE-OF."
 ;;;; Bars over time
 
 (define-record (span (:constructor make-span (kind start text &optional end)))
-  "A period, from tick START to END, of a task that waits, is blocked, cleans up or runs a command."
+  "A period (ticks START to END) in which a task waits, is blocked, cleans up or runs a command."
   (kind :waiting keyword "what a span is of: :waiting, :parts (waiting for them), :blocked,
 :cleaning, :failure (it takes no time) or :command" :export)
   (start 0 real "the tick at which a span begins" :export)
@@ -214,14 +214,14 @@ expression, by default a short text."
 (defun call-at-depth (span depth) (nth depth (span-calls span)))
 
 (defun split-by-call (spans depth)
-  "Split SPANS, of commands, into lists of successive spans in the same call at DEPTH."
+  "Split SPANS, spans of commands, into lists of successive spans in the same call at DEPTH."
   (loop while spans
         collect (let ((call (call-at-depth (first spans) depth)))
                   (loop while (and spans (eq call (call-at-depth (first spans) depth)))
                         collect (pop spans)))))
 
 (defun call-bar (bar spans depth until)
-  "Return a bar, part of BAR, for the call at DEPTH that issued SPANS, ending at UNTIL or before."
+  "Return a part of BAR for the call at DEPTH that issued SPANS: a bar that ends by the tick UNTIL."
   (let ((call (make-bar (bar-serial bar) bar nil (call-at-depth (first spans) depth)
                         (span-start (first spans)) (1+ (bar-depth bar)))))
     (setf (bar-call-p call) t
@@ -231,7 +231,7 @@ expression, by default a short text."
     call))
 
 (defun call-bars (bar spans &optional (depth 0))
-  "Return bars, parts of BAR, for the calls at DEPTH in which the commands SPANS were issued."
+  "Return parts of BAR: a bar for each call at DEPTH in which commands of SPANS were issued."
   (loop for (run . more) on (split-by-call spans depth)
         when (call-at-depth (first run) depth)
           collect (call-bar bar run depth
@@ -240,7 +240,7 @@ expression, by default a short text."
                                 (reduce #'max run :key #'span-end)))))
 
 (defun finish-bar (bar now)
-  "Order spans, commands and parts in BAR and its parts; set the end of what has not ended to NOW."
+  "Order spans, commands and parts in BAR and its parts, and set missing ends to NOW."
   (unless (bar-end bar) (end-bar bar nil now))
   (setf (bar-spans bar) (nreverse (bar-spans bar))
         (bar-commands bar) (nreverse (bar-commands bar))
@@ -252,7 +252,7 @@ expression, by default a short text."
 
 (defun bars (trace &optional now)
   "Return the bars of the plans, top-level tasks, in TRACE, in order of start. The bars of other
-tasks are parts of these. What has not ended ends at the tick NOW, by default TRACE's last."
+tasks are parts of these bars. Bars without an end get the end NOW, by default TRACE's last tick."
   (let ((bars (make-hash-table)) (commands (make-hash-table :test 'eq)) (roots '()) (last 0))
     (loop for entry across trace
           for bar = (gethash (trace-entry-task entry) bars)

@@ -21,7 +21,7 @@
 (setf (documentation 'plan-break-task 'function)
       "Return the task that stopped.")
 
-(defparameter *longest-stack* 12 "How many expressions of a plan a break shows at most.")
+(defparameter *longest-stack* 12 "The largest number of expressions of a plan that a break shows.")
 
 (defun write-break (break stream)
   (let ((task (plan-break-task break)))
@@ -69,7 +69,7 @@ none. Without an interactive debugger, such failures are messages.")
 
 (addition *step-plans*)
 (defvar *step-plans* nil
-  "When true, plans that are started stop before each expression: see STEP-TASK.")
+  "If true, plans that start from now on stop before each expression: see STEP-TASK.")
 
 (defstruct (stepping-course (:constructor make-stepping-course (task)) (:copier nil))
   "How TASK is stepped through. MODE is :run, :step (stop before any expression) or :over. In the
@@ -81,9 +81,8 @@ next expression; if UNTIL is NIL, until the task is over."
   (until nil :type (or null frame (eql :next))))
 
 (defgeneric next-form (node frame)
-  (:documentation "NODE is the node of FRAME. Return the expression that the next step of FRAME
-begins, and true if it is a leaf. Return NIL if the step begins no expression, or an expression that
-has its own step.")
+  (:documentation "Return the expression that the next step of FRAME, a frame of NODE, begins, and
+true if it is a leaf. Return NIL if it begins none, or an expression that has its own step.")
   (:method (node frame)
     (if (and (zerop (frame-counter frame)) (null (frame-data frame)))
         (values (node-form node) nil)
@@ -96,7 +95,7 @@ has its own step.")
           nil))))
 
 (defun note-frame-return (course task frame)
-  "Record in COURSE if TASK, before a step at FRAME, has returned to the frame UNTIL of COURSE."
+  "If TASK, about to take a step at FRAME, has returned to the frame UNTIL of COURSE, record this."
   (let ((until (stepping-course-until course)))
     (when (and (frame-p until)
                (eq task (stepping-course-within course))
@@ -143,7 +142,6 @@ this task."
         (resume-stepping course :over task (and outer (frame-up outer)))))))
 
 (defun stop-if-wanted (courses task frame)
-  "Stop TASK before its step at FRAME, if one of COURSES says so."
   (let ((course (some (lambda (whole) (find whole courses :key #'stepping-course-task))
                       (lineage task))))
     (when course
@@ -161,7 +159,7 @@ this task."
 
 (addition step-task)
 (defun step-task (task &optional (on t))
-  "From now on, stop before each expression of TASK and its parts. If ON is NIL, stop no longer. A
+  "From now on, stop before each expression of TASK and its parts. If ON is NIL, no longer stop. A
 stop enters the debugger; its restarts STEP, NEXT, OUT and CONTINUE say how far to run. Without an
 interactive debugger, a stop is a message, and the task goes on. Returns nothing."
   (check-argument step-task task (task-p task) "a task, as begin-plan returns")

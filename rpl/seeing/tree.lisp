@@ -104,7 +104,7 @@ of many the innermost" :export)
         ((eq :waiting (task-state task)) :waiting)
         (t :running)))
 
-(defconstant +most-calls+ 10 "How many calls of plans an image of a task shows at most.")
+(defconstant +most-calls+ 10 "The largest number of plan calls that an image of a task shows.")
 
 (defun image-of-task (task depth folded-p)
   (make-task-image :serial (task-serial task) :depth depth
@@ -139,6 +139,6 @@ are among FOLDED are left out. No task may go on meanwhile."
                      :plans (length plans) :tasks (runner-alive runner))))
 
 (defun runner-change-mark (runner)
-  "Return a list that is not EQUAL to an earlier one if tasks of RUNNER changed. For any thread."
+  "Return a list that changes (under EQUAL) when tasks of RUNNER change. For any thread."
   (list (runner-steps runner) (runner-alive runner) (runner-serial runner)
         (runner-blocks runner) (and (runner-stepper runner) t)))

@@ -7,7 +7,7 @@
 ;;; Effects follow their causes in the trace at once: a wake-up is due to the last change before it
 ;;; of what was waited for, the end of a wait for parts to the last part that ended.
 
-(defparameter *why-event-limit* 12 "How many steps of a task's history WHY tells at most.")
+(defparameter *why-event-limit* 12 "The largest number of steps of a history that WHY tells.")
 
 (defun short-form-text (form) (form-text form 60))
 

@@ -52,7 +52,7 @@
     (setf (task-frame task) (make-frame +gate+ (frame-environment frame) frame))))
 
 (defun add-hold (task hold)
-  "Keep TASK from starting until RELEASE-HOLD with HOLD. Signals MISUSE if TASK has started."
+  "Keep TASK from starting until HOLD is released. Signals MISUSE if TASK has started."
   (when (null (task-gate task))
     (unless (eq (task-state task) :created)
       (unless (task-at-start-p task)
@@ -71,7 +71,7 @@
         (wake task nil)))))
 
 (defun spawn-gated (parent node environment index level task)
-  "Do as SPAWN. But if TASK has a gate, TASK does not start before its gate is open."
+  "Start TASK as SPAWN does. But if TASK has a gate, TASK waits until this gate is open."
   (spawn parent node environment index level task)
   (when (task-gate task) (put-gate task))
   task)
@@ -103,7 +103,7 @@ itself, innermost first. Leave out parts that were stopped before."
       (setf (runner-mask runner) (logior +interrupt+ (runner-mask runner))))))
 
 (defun block-task (task &optional suspension)
-  "Keep TASK from running. Blocks are counted. With SUSPENSION, its status is shown as suspended."
+  "Keep TASK from running. Blocks are counted. If SUSPENSION is true, TASK is shown as suspended."
   (let ((blocked (blocked-p task)))
     (incf (task-blocked task))
     (when suspension (incf (task-suspensions task)))
@@ -135,7 +135,7 @@ itself, innermost first. Leave out parts that were stopped before."
 
 (defun call-or-post (word task function)
   "Call FUNCTION now if TASK has no runner, or if the caller is a plan of the runner of TASK.
-Otherwise post FUNCTION for the next reaction. FUNCTION does the work of WORD on TASK. Return TASK."
+Otherwise post FUNCTION for the next reaction. WORD names what FUNCTION does to TASK. Return TASK."
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)

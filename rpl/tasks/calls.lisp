@@ -22,7 +22,7 @@
           (t (make-keyword name)))))
 
 (defun lambda-list-shape (lambda-list)
-  "Return the shape of LAMBDA-LIST, an ordinary lambda list or that of a function type."
+  "Return the shape of LAMBDA-LIST, an ordinary lambda list or the lambda list of a function type."
   (let ((mode nil) (least 0) (optional 0) (keys '()) (seen '()))
     (dolist (parameter lambda-list)
       (cond ((member parameter lambda-list-keywords)
@@ -74,8 +74,8 @@ WRONG-P is as for UNKNOWN-KEYWORD-TEXT."
 ;;;; Plan functions for commands
 
 (defun note-plan-function (name call wait &optional fluent codes results)
-  "Record that plans write CALL, and then (wait-for WAIT) unless WAIT is NIL, instead of a call of
-the command NAME. CALL is the plan function with the names of its arguments. The first argument is
+  "Record what plans write instead of a call of the command NAME: CALL, and then (wait-for WAIT)
+unless WAIT is NIL. CALL is the plan function with the names of its arguments. The first argument is
 the number of a part if the robot may have several such parts. FLUENT is the form of the fluent that
 has one of CODES if the command failed, or NIL. RESULTS are forms of the fluents for the results."
   (setf (get name 'plan-call) (list call wait)
@@ -87,7 +87,7 @@ has one of CODES if the command failed, or NIL. RESULTS are forms of the fluents
   (and (symbolp name) (get name 'end) t))
 
 (defun fluent-of-error-code (name code)
-  "Return the form of the fluent that is set if a command of function NAME ends with CODE; or NIL."
+  "Return the form of the fluent set when a command of plan function NAME ends with CODE, or NIL."
   (destructuring-bind (&optional fluent codes) (and (symbolp name) (get name 'codes))
     (and (symbolp code) (member code codes :test #'same-name-p) fluent)))
 
@@ -109,8 +109,8 @@ has one of CODES if the command failed, or NIL. RESULTS are forms of the fluents
       (format nil "~(~A~)~@[ ~A~]" call (wait-form-text wait)))))
 
 (defun wait-for-end-text (name part)
-  "Return the text of the form that waits for the end of a command. The plan function NAME gives
-this command to part number PART. Return NIL if no fluent is pulsed at the end."
+  "Return the text of the form that waits for the end of a command. The plan function NAME has given
+the command to part number PART. Return NIL if no fluent is pulsed at the end."
   (destructuring-bind (&optional variable wait results) (get name 'end)
     (declare (ignore results))
     (wait-form-text (subst part variable wait))))

@@ -22,8 +22,8 @@
   "Functions to call when a failure happens, with the failure, its task and its frame.")
 
 (defun failure-of (condition task frame)
-  "Return the failure for CONDITION, which TASK at FRAME has met, with all data of a failure. Count
-the failure as steps that take as long, so that a plan that only fails uses up its slice."
+  "Return the failure for CONDITION, an error of TASK at FRAME, with all data of a failure. Count
+the failure as steps that would take as long, so that a plan that only fails uses its slice up."
   (let ((failure (if (typep condition 'plan-failure)
                      condition
                      (make-condition 'lisp-failure :condition condition
@@ -41,7 +41,7 @@ the failure as steps that take as long, so that a plan that only fails uses up i
     failure))
 
 (defun lisp-backtrace ()
-  "Return a text of the Lisp calls in progress in code of a plan that has just signalled an error."
+  "Return a text of the Lisp calls in progress, in a plan whose code has just signalled an error."
   (let* ((calls (calls-in-progress))
          (signalled (member-if (lambda (name) (and (symbolp name) (string= "%SIGNAL" name)))
                                calls :key #'first)))
@@ -91,7 +91,7 @@ the failure as steps that take as long, so that a plan that only fails uses up i
     (when (eq :ready (task-state task)) (make-ready task))))
 
 (defun repair-timers (runner tasks)
-  "Rebuild RUNNER's timers from its old ones and those of TASKS, without timers of ended tasks."
+  "Rebuild RUNNER's timers from its old timers and the timers of TASKS. Drop timers of ended tasks."
   (let* ((heap (timers-heap (runner-timers runner)))
          (timers (remove-duplicates (append (coerce heap 'list)
                                             (remove nil (mapcar #'task-timer tasks)))
@@ -123,13 +123,12 @@ the failure as steps that take as long, so that a plan that only fails uses up i
           (:no-error (value) (when value (funcall (watcher-wake watcher) watcher value nil))))))))
 
 (defun finish-ending (task)
-  "Finish the end of TASK if it was to evaporate or otherwise end after its parts and none is left."
+  "If TASK was to evaporate or otherwise end after its parts, and no part is left, end TASK."
   (when (and (eq :waiting (task-state task)) (null (task-newest-child task)))
     (cond ((eq :evaporate (task-signal task)) (evaporate-now task))
           ((task-signal task) (make-ready task)))))
 
 (defun repair-runner (runner)
-  "Make the state of RUNNER consistent, wherever RUNNER was interrupted."
   (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
   (let ((tasks (mapcan #'repair-live-parts (plan-runner-tasks runner))))
     (repair-queues runner tasks)
@@ -198,7 +197,7 @@ after any failure."
  'leave-plan "End the plan without a message.")
 
 (defun leave-plan ()
-  "End the plan and report nothing. Must be called by Lisp code of a plan; elsewhere just return."
+  "End the plan whose Lisp code calls this function, and report nothing. Elsewhere just return."
   (let ((restart (find-restart 'leave-plan)))
     (when restart (invoke-restart restart))))
 
@@ -274,7 +273,7 @@ the trouble it met, and whether the step may have stopped inside the simulator's
                 anywhere-p)))))
 
 (defun call-handling-trouble (runner function)
-  "Return FUNCTION's value for RUNNER, or end or fail a task whose step met trouble and return NIL."
+  "Return FUNCTION's value for RUNNER. If a step met trouble, end or fail its task and return NIL."
   (let ((outcome nil) (result nil) (anywhere-p nil))
     (unwind-protect
          (setf (values outcome result anywhere-p) (call-to-outcome runner function))

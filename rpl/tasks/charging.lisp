@@ -80,8 +80,8 @@ steps a tick, or any number of steps if BUDGET is NIL."
 (addition charge-ticks)
 (defun charge-ticks (ticks &optional (runner *runner*))
   "Stop all plans of the robot for TICKS, 0 or more, once the current step has ended. For Lisp code
-in a plan that knows its cost only when it runs. Commands go on; afterwards the plans react to what
-has happened. If thinking is not charged, do nothing. Returns nothing. Signals WRONG-ARGUMENT."
+of plans whose cost is known only while the code runs. Commands go on; afterwards the plans react to
+what has happened. If thinking is not charged, do nothing. Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
   (note-from-outside #'charge-ticks runner ticks)
   (when (and runner (runner-charged-p runner) (plusp ticks))
@@ -102,10 +102,10 @@ has happened. If thinking is not charged, do nothing. Returns nothing. Signals W
 
 (addition charge-steps)
 (defun charge-steps (steps &optional (runner *runner*))
-  "Count STEPS, a whole number, as if the plans of the robot had taken these steps. For Lisp code in
-a plan that knows its cost only when it runs. Steps beyond the budget of this tick use the budget of
-the next ticks. Does nothing if the steps of plans have no budget, and inside a WITH-CHARGE, which
-has a fixed price. Returns nothing. Signals WRONG-ARGUMENT."
+  "Count STEPS, a whole number, as if the plans of the robot had taken these steps. For Lisp code of
+plans whose cost is known only while the code runs. Steps beyond the budget of this tick use the
+budget of the next ticks. Does nothing if the steps of plans have no budget, and inside a
+WITH-CHARGE, which has a fixed price. Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument charge-steps steps (whole-p steps) "a whole number of steps, from 0 to 1e9")
   (note-from-outside #'charge-steps runner steps)
   (when runner (count-steps steps runner (running-task runner)))

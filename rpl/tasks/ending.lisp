@@ -55,7 +55,7 @@
         (t (make-ready parent))))
 
 (defun end-with-signal (parent signal)
-  "Evaporate the children of PARENT, which waits for them. When all are gone, send PARENT SIGNAL."
+  "Evaporate the children of PARENT, which waits for them. Send SIGNAL to PARENT when all are gone."
   (setf (task-signal parent) signal
         (task-awaiting parent) nil)
   (if (task-newest-child parent)
@@ -69,7 +69,7 @@
       (wake parent value)))
 
 (defun fail-or-escape (task how result)
-  "If HOW says that a child of TASK failed or escaped, let TASK do so with RESULT, and return true."
+  "If HOW says that a child of TASK failed or escaped, let TASK end so with RESULT; return true."
   (when (member how '(:failed :escaped))
     (end-with-signal task result)
     t))
@@ -183,7 +183,6 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
 ;;; Kills from outside, and cleanups that are given up.
 
 (defun request-end (task)
-  "Evaporate TASK as soon as its plan runner can."
   (let ((runner (task-runner task)))
     (atomic-push (cons task *asker*) (runner-ends-requested runner))
     (funcall (runner-on-post runner))))
@@ -200,7 +199,6 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
       (and (task-cleaning task) task)))
 
 (defun give-up-cleanup (task)
-  "Abandon the cleanup of TASK that is in progress. Queue a warning."
   (queue-notable-warning "The cleanup " (form-text (task-form task)) " in " (task-label task)
                " was given up at tick " (runner-tick (task-runner task)) ".")
   (setf (task-ending-p task) t)

@@ -47,8 +47,8 @@ progress, may still post.
     (format stream "tick ~D, ~D task~:P" (runner-tick runner) (length (runner-roots runner)))))
 
 (defconstant +steps-of-start+ 100
-  "How many steps of a reaction the start of a plan counts as. So endless starts of plans use up the
-reaction before the heap. With a budget of steps, the start of a plan counts as one step.")
+  "The start of a plan counts as this number of steps of a reaction. So endless starts of plans use
+up the reaction before the heap. With a budget of steps, the start of a plan counts as one step.")
 
 (defun start-plan (runner plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS as a top-level task of RUNNER. Return
@@ -83,7 +83,7 @@ Return :budget when the steps of the reaction are used up, or when all tasks sto
             (t (return :idle))))))
 
 (defun run-round (runner)
-  "Run the ready tasks of RUNNER for one round, even if some meet trouble. Return as RUN-READY does.
+  "Run the ready tasks of RUNNER for one round, even if some meet trouble. Return RUN-READY's value.
 If a tick's budget ends during a round, the next tick continues it, so no task loses its turn."
   (unless (shiftf (runner-broken-off-p runner) nil)
     (incf (runner-round runner)))
@@ -160,7 +160,7 @@ budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
 ;;; at one instant, see APPLY-SETTINGS. Each is done between two reactions, in the order of posting.
 
 (defun apply-next-batch (runner)
-  "Apply the oldest post to RUNNER, a batch or call. True if there is one. Errors become messages."
+  "Apply the oldest post of RUNNER, a batch or call. Return true if so. Errors become messages."
   (multiple-value-bind (entry there) (take-posted-entry runner)
     (when there
       (with-owned-home (runner)

@@ -76,7 +76,8 @@ MISUSE" :writable))
                 (mapcar #'unqualified-text (if (consp name) list (list list)))))))
 
 (defun plan-remedy (name)
-  "NAME was given as a plan but is no plan. Return sentences about what to write instead; or NIL."
+  "NAME was given as a plan but is not a plan. Return sentences about what to write instead; or
+NIL."
   (flet ((say (control &rest arguments)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
     (cond ((and (consp name) (proper-list-p name))
@@ -264,7 +265,7 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
        (eq procedure (gethash (procedure-name procedure) *procedure-cells*))))
 
 (defun parts-of-code (object)
-  "Return a list of what OBJECT, a node, procedure, function or environment, refers to."
+  "Return a list of the objects to which OBJECT (node, procedure, function, environment) refers."
   (etypecase object
     (function (and (closure-p object) (closure-values object)))
     (node (node-parts object))
@@ -283,8 +284,8 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
             append (code-in (instance-slot node index)))))
 
 (defun shared-code (code)
-  "If forks can share the nodes that can be reached from CODE, a node or procedure, return a list of
-these nodes, and true. Return NIL and false if one of them has closed over something."
+  "If forks can share all nodes reachable from CODE, a node or procedure, return a list of these
+nodes, and true. Otherwise some node has closed over something: return NIL and false."
   (let ((seen (make-hash-table :test 'eq)) (nodes '()) (work (list code)))
     (loop while work
           do (let ((object (pop work)))

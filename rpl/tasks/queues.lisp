@@ -114,7 +114,6 @@
       (setf (timer-place timer) nil))))
 
 (defun next-timer (timers)
-  "Return the timer of TIMERS that is due first, or NIL."
   (let ((heap (timers-heap timers)))
     (and (plusp (fill-pointer heap)) (aref heap 0))))
 

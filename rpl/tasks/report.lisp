@@ -6,7 +6,7 @@
           task-state-text write-task-line write-task-tree))
 
 (defun task-state-text (task)
-  "Return a text of the state of TASK, with whether TASK evaporates, cleans up or is blocked."
+  "Return a text: the state of TASK, and whether TASK evaporates, cleans up or is blocked."
   (let ((blocker (and (not (task-ending-p task))
                       (find-if #'plusp (lineage task) :key #'task-blocked))))
     (format nil "~(~A~)~:[~;, evaporating~]~:[~;, cleaning up~]~@[, blocked~A~]" (task-state task)
@@ -37,7 +37,7 @@ with the task, a column and STREAM."
   (cut (failure-text failure) 500))
 
 (defun write-first-items (control items stream)
-  "Write the first 30 of ITEMS to STREAM, each by the format string CONTROL, and count the rest."
+  "Write the first 30 of ITEMS to STREAM, each by the format string CONTROL, and how many are left."
   (let ((more (nthcdr 30 items)))
     (dolist (item (ldiff items more)) (format stream control item))
     (when more (format stream "    ... and ~D more~%" (length more)))))
@@ -88,13 +88,13 @@ matches Lisp errors; otherwise NIL."
                            (clause-types form)))))
 
 (defun misspelt-handler-text (failure)
-  "Return a text if a clause around FAILURE is for a similar class, or for Lisp errors; or NIL."
+  "Return a text about a clause around FAILURE for a similar class or for Lisp errors; or NIL."
   (multiple-value-bind (type class) (misspelt-handler-type failure)
     (let ((error-type (handler-type-for-errors failure)))
       (cond (type (format nil "a clause is for ~(~S~), but the class of the failure ~
                                is ~(~S~)" type class))
             (error-type
-             (format nil "a clause is for ~(~S~), which matches errors of Lisp but not failures of ~
+             (format nil "a clause is for ~(~S~), which matches Lisp errors but not failures from ~
                           FAIL; write ~(~S~) or T" error-type (or (failure-class failure) t)))))))
 
 (defun write-failure-report (failure stream)
@@ -217,9 +217,9 @@ if there is no such task. WITHIN is a plan runner, or a task; PLACE then starts 
 
 (addition task-source)
 (defun task-source (task)
-  "Return the source of all code that TASK runs, as data. For a branch, this is its form. For a
-top-level task, this is the text of its plan, as PROCEDURE-SOURCE returns it. If the plan has no
-name or has been redefined meanwhile, return only the plan's body."
+  "Return the source of all code that TASK runs, as data. The source of a branch is its form. The
+source of a top-level task is the text of its plan, as PROCEDURE-SOURCE returns it. If the plan has
+no name or has been redefined meanwhile, return only the plan's body."
   (check-argument task-source task (task-p task) "a task, as begin-plan returns")
   (let ((procedure (and (null (task-parent task))
                         (find (task-node task) (all-procedures) :key #'procedure-body))))

@@ -24,7 +24,7 @@ The slice is a tenth of the steps of a reaction if that is less.")
 changes are applied. The changes are then applied even if some tasks do not wait yet.")
 
 (defparameter *runaway-limit* 1000000
-  "The number of steps after which time passes in a reaction without budget, despite ready tasks.")
+  "In a reaction without budget, time passes after this number of steps even if tasks are ready.")
 
 (addition *plan-task-limit*)
 (defparameter *plan-task-limit* 200000
@@ -91,13 +91,12 @@ frame, or NIL" :writable :export)
 ;;; A fork of a run copies the runner of that run. A runner of another run is not copied.
 
 (defgeneric client-forked-p (client copier)
-  (:documentation "True if CLIENT, the client of a plan runner, belongs to the run that COPIER
-copies.")
+  (:documentation "True if CLIENT, a plan runner's client, belongs to the run that COPIER copies.")
   (:method (client copier) (declare (ignore client copier)) nil))
 
 ;; Events of tasks that the client may want to know.
 (defgeneric note-plans-shown (client)
-  (:documentation "Note that somebody looks at the plans of CLIENT, the client of a plan runner.")
+  (:documentation "Note that the plans of CLIENT, the client of a plan runner, have been shown.")
   (:method (client)
     (declare (ignore client))
     nil))
@@ -149,7 +148,7 @@ of CLIENT. If FAILURE is NIL, note that TASK, a part of a plan, was just ended."
   (find number (all-tasks which) :key #'task-serial))
 
 (defun counted-steps (runner)
-  "Return the number of counted steps of RUNNER: steps of tasks not exempt, and charged steps."
+  "Return how many steps of RUNNER count: charged steps, and steps of tasks that are not exempt."
   (+ (runner-steps runner) (runner-uncovered runner)))
 
 (defun count-slow-step (steps runner &optional task)
@@ -222,7 +221,7 @@ in COUNTED-STEPS, the slow step counts as one step, or as none if TASK is exempt
        (<= (task-slice task) 0)))
 
 (defun take-ready (runner)
-  "Return RUNNER's next task to run, or NIL. Put aside tasks blocked or with no slice left."
+  "Return RUNNER's next task to run, or NIL. Put aside blocked tasks and tasks with no slice left."
   (declare #.*hot* (type plan-runner runner))
   (loop
     (let ((level (1- (integer-length (logandc2 (runner-mask runner) +interrupt+)))))
@@ -277,7 +276,7 @@ thread, or in the run that replaced a rewound run. Return TASK if TASK has no co
   (or (null runner) (eq runner *runner*)))
 
 (defun task-for-caller (task)
-  "Return TASK; to a caller outside of the plans of TASK, return its CURRENT-COUNTERPART."
+  "Return TASK or, if the caller is outside of the plans of TASK, its CURRENT-COUNTERPART."
   (let ((runner (task-runner task)))
     (if (inside-plans-p runner)
         task

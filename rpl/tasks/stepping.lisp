@@ -43,7 +43,7 @@ the running task wait until then."
                    (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
 
 (defun wait-for-delivery (task frame value)
-  "If TASK must deliver a notice first, return true; it waits, then continues with FRAME and VALUE."
+  "If TASK must deliver a notice before it goes on with FRAME and VALUE, let it wait. True if so."
   (let ((notice (find task (runner-notices (task-runner task)) :key #'notice-sender)))
     (when notice
       (park task notice)
@@ -79,7 +79,7 @@ the running task wait until then."
                    " s without a pause: " (form-text form) " in " (task-label task)))))
 
 (defun time-now (runner)
-  "Return the seconds by the clock of RUNNER, or NIL if RUNNER has no clock."
+  "Return the time on RUNNER's clock, in seconds, or NIL without a clock."
   (let ((clock (runner-clock runner)))
     (and clock (funcall clock))))
 
@@ -135,8 +135,8 @@ the running task wait until then."
            +parked+)))
 
 (defun check-interruptions (task frame value)
-  "Evaporate TASK if that was requested; or let TASK yield, to a higher level or because it has used
-its steps. FRAME and VALUE are what the last step returned. Return what RUN-STEPS goes on with."
+  "Evaporate TASK if requested, or let it yield if its steps are used up or a higher level is ready.
+FRAME and VALUE come from the last step. Return the frame and value for RUN-STEPS to continue."
   (when (runner-ends-requested (task-runner task)) (end-requested-tasks (task-runner task)))
   (let* ((runner (task-runner task))
          (mask (logandc2 (runner-mask runner) +interrupt+))
@@ -208,7 +208,7 @@ its steps. FRAME and VALUE are what the last step returned. Return what RUN-STEP
   (unless (< (runner-alive runner) *plan-task-limit*)
     (if (running-task runner)
         (fail :class :too-many-tasks :limit *plan-task-limit*)
-        (reject-use "There are ~D unfinished tasks of plans, as many as *PLAN-TASK-LIMIT* allows."
+        (reject-use "There are ~D tasks, the *PLAN-TASK-LIMIT*. (end-plan TASK) ends a plan."
                     (runner-alive runner)))))
 
 (defun spawn (parent node environment index level &optional (task (make-task nil node)))

@@ -98,7 +98,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
         others))
 
 (defun warn-of-remaining-cycle (task)
-  "When a part of TASK has ended, queue a warning if the others wait in a cycle through TASK."
+  "A part of TASK has ended. Queue a warning if other parts wait in a cycle through TASK."
   (when (and (task-newest-child task) (null (task-signal task)))
     (let* ((part (first-innermost-part task))
            (tasks (and (or (task-awaiting part) (plusp (task-blocked part)))
@@ -108,10 +108,10 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
 ;;;; Stillness
 
 (define-global +no-fluent+ "a value that is no fluent"
-  "The object that a task waits for if it got something other than a fluent to wait for.")
+  "The object that a task waits for if its wait was given something other than a fluent.")
 
 (defun waiting-parts (task)
-  "Return a list of those of TASK and its parts that wait for more than the end of their own parts."
+  "Return those of TASK and its parts that wait, but not those that only wait for their own parts."
   (remove-if-not (lambda (part) (and (eq :waiting (task-state part)) (task-awaiting part)))
                  (all-tasks task)))
 
@@ -140,7 +140,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (starts-with-subseq "(task-status " (fluent-text fluent)))
 
 (defun missing-end-wait-text (name part tasks)
-  "Return a text: a form that waits for the end of command NAME on PART; NIL if TASKS wait for it."
+  "Return the text of a form that waits for the end of NAME on PART; NIL if TASKS wait for this."
   (let ((text (wait-for-end-text name part)))
     (and text
          (notany (lambda (fluent) (search (fluent-text fluent) text)) (fluents-awaited tasks))
@@ -232,17 +232,17 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
 ;;; Reports.
 
 (defun warn-of-dubious-wait (task text)
-  "Queue a warning with TEXT, once for each form, that a wait of TASK is probably not as meant."
+  "Queue a warning, once for each form, that a wait of TASK is probably a mistake. TEXT says why."
   (when (first-warning-p (task-form task) (task-runner task))
     (queue-notable-warning "In the plan " (task-label (task-top task)) ", " text)))
 
 (defun wait-forever (task)
-  "Let TASK wait forever, as it got no fluent to wait for. Queue a warning, once for each form."
+  "Let TASK wait forever for lack of a fluent. Queue a warning, once for each form."
   (park task +no-fluent+)
   (warn-of-dubious-wait task (no-fluent-advice task)))
 
 (defun warn-of-awaited-value (task value)
-  "If VALUE, which TASK waits for, is hardly meant as a condition, warn once for each form."
+  "Warn once for each form if VALUE, which TASK waits for, is probably not meant as a condition."
   (multiple-value-bind (kind remedy)
       (typecase value
         (number (values "number" (format nil "(wait-time ~A) waits for that many ticks" value)))

@@ -143,7 +143,7 @@ NIL" :writable :export)
         while each collect each))
 
 (defun frames-around (task &optional (frame (task-frame task)))
-  "Return a list, innermost first, of the frames of TASK from FRAME on and of the tasks around it."
+  "Return a list of frames, innermost first: those of TASK from FRAME on, and of tasks around TASK."
   (nconc (frame-chain frame)
          (mapcan (lambda (whole) (frame-chain (task-frame whole))) (rest (lineage task)))))
 

@@ -140,7 +140,7 @@ each (chunk fill), newest first."
         (chronicle-fill trace) 0))
 
 (defun add-trace-entry (trace tick event task form subject value)
-  "Add to the chronicle TRACE that EVENT happened to TASK, a task's number. The agent is *ASKER*."
+  "Record in the chronicle TRACE that EVENT happened to task number TASK. The agent is *ASKER*."
   (declare #.*hot* (type chronicle trace))
   (when (> (+ 7 (chronicle-fill trace)) (length (chronicle-chunk trace))) (begin-chunk trace))
   (let ((chunk (chronicle-chunk trace)) (fill (chronicle-fill trace)) (asker *asker*))

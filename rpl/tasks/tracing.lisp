@@ -7,7 +7,7 @@
 ;;; *ASKER* is the agent of an event: the task at work, or the caller whose post is applied.
 
 (defmacro note-event (task event &optional subject value)
-  "If there is a trace, add to it that EVENT happened to TASK. SUBJECT and VALUE are as in
+  "If there is a trace, record in the trace that EVENT happened to TASK. SUBJECT and VALUE are as in
 TRACE-ENTRY; without a trace, they are not evaluated."
   (once-only (task)
     `(when (runner-trace (the plan-runner (task-runner ,task)))

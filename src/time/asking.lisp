@@ -15,8 +15,8 @@ thread. Signals MISUSE inside a tick of another world, and if FUNCTION is aborte
 
 (addition asking)
 (defmacro asking ((object) &body body)
-  "Run BODY, as ASK calls a function, while the world of OBJECT, a simulation or robot, stands
-still. Return its values."
+  "Run BODY while the world of OBJECT, a simulation or robot, stands still, as ASK calls a function.
+Return the values of BODY."
   `(ask ,object (lambda () ,@body)))
 
 ;;; Questions of other threads.

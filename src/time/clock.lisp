@@ -80,7 +80,7 @@
                       (pass-tick pacing))))))
 
 (defun release-pacing (custody pacing)
-  "Release the custody of the thread of PACING, which ends, perhaps because it was killed."
+  "The thread of PACING ends, perhaps because it was killed. Release its custody."
   (in-any-case
     (unless (pacing-stopping-p pacing)
       (setf (pacing-stopping-p pacing) t)
@@ -140,9 +140,9 @@ START. Then pass ticks at the pace of PACING, if this thread has got custody."
 (defun start-pacing (timeline tick idle-p rate caller &key paused-p)
   "Start a thread that passes ticks of TIMELINE at RATE. The thread calls TICK for each tick, while
 IDLE-P returns false. If PAUSED-P is true, ticks pass only after RESUME. The thread calls CALLER
-with a function that does all its work. The thread takes over custody of TIMELINE from this thread.
-Return TIMELINE. Signals MISUSE if TIMELINE is already live, and WRONG-ARGUMENT if RATE is neither a
-number from 0.001 to 1000000 nor :FREE."
+with a function that does all work of the thread. The thread takes over custody of TIMELINE from
+this thread. Return TIMELINE. Signals MISUSE if TIMELINE is already live, and WRONG-ARGUMENT if RATE
+is neither a number from 0.001 to 1000000 nor :FREE."
   (check-rate rate)
   (when (live-p timeline) (reject-use "~A already runs live." (timeline-name timeline)))
   (let ((pacing (make-pacing timeline rate tick idle-p

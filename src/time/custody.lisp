@@ -78,7 +78,7 @@ values of the call. FUNCTION and OTHERWISE are interruptible if this thread was 
       (swap-if-eq (custody-thread custody) thread nil))))
 
 (defun answer-own-questions ()
-  "Answer the questions about this thread's worlds, lest threads that wait for each other deadlock."
+  "Answer the questions about this thread's worlds, so that waiting threads do not deadlock."
   (dolist (custody *held-custodies*)
     (when (has-custody-p custody) (answer-questions custody))))
 

@@ -16,8 +16,8 @@
 
 (addition *hog-seconds*)
 (defparameter *hog-seconds* 0.5
-  "The number of seconds, at least 0.05, that a user's function, such as a continuation, may run in
-the simulator's thread before a warning names it. STOP-SIMULATOR interrupts such a function after
+  "A warning names a user's function, such as a continuation, that runs for more than this number of
+seconds, at least 0.05, in the simulator's thread. STOP-SIMULATOR interrupts such a function after
 the same time. Set the variable with SETF: a LET does not affect the simulator's threads.")
 
 (defun hog-seconds ()
@@ -146,7 +146,7 @@ RATE. Signals WRONG-ARGUMENT."
         until (> (seconds-now) due)))
 
 (defun interrupt-hog (pacing)
-  "Abort the users' code that the thread of PACING is in. Return true if it is in users' code."
+  "If the thread of PACING is in users' code, abort this code and return true."
   (let* ((calls (pacing-calls pacing)) (count (user-calls-count calls)))
     (when (user-calls-origin calls)
       (interrupt-thread (pacing-thread pacing) (lambda () (abort-user-code count)))
@@ -220,9 +220,9 @@ end. Return TIMELINE. Signals MISUSE if the thread is in users' code that cannot
                                           (text-of-origin origin) (hog-seconds))))))))
 
 (defun users-code-in-progress (simulation)
-  "Return two values: a text that names the users' code that the thread of the live SIMULATION is
-in, and how many calls of users' code have begun in that thread. Return NIL if the thread is not in
-users' code, or waits in a debugger."
+  "Return two values: a text that names the users' code in the thread of the live SIMULATION, and
+the number of calls of users' code that have begun in this thread. Return NIL if the thread is not
+in users' code, or waits in a debugger."
   (if-paced (pacing simulation)
     (let* ((calls (pacing-calls pacing))
            (origin (and (not (user-calls-waiting-p calls)) (user-calls-origin calls))))
@@ -235,7 +235,7 @@ users' code, or waits in a debugger."
       (and (user-calls-origin calls) (user-calls-waiting-p calls) t))))
 
 (defun abort-hog (simulation)
-  "If users' code of the live SIMULATION that a warning has named still runs, abort it. True if so."
+  "If a warning has named users' code of the live SIMULATION that still runs, abort it. True if so."
   (if-paced (pacing simulation)
     (and (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
          (interrupt-hog pacing))))

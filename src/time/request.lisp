@@ -10,7 +10,7 @@
 ;;; above include the structure, and add slots and methods.
 
 (define-kind (request :constructor (make-request (operator arguments)))
-    "A request that a run perform an operator."
+    "A request to a run to perform an operator."
   (:fixed
    (operator nil t "the requested operator: its name, or an object that has one" :export)
    (arguments '() list "the arguments of the operator" :export)
@@ -23,7 +23,7 @@
 
 (defgeneric perform (request timeline)
   (:documentation
-   "Perform REQUEST, in the thread of its world, as a tick of TIMELINE starts or its run ends."))
+   "Perform REQUEST in the thread of its world, when a tick of TIMELINE begins or the run ends."))
 
 (defgeneric request-entry (request)
   (:documentation "Return the journal entry of REQUEST: a list (operator argument ...).")

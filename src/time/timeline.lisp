@@ -43,7 +43,7 @@ newest first")
    (phase 0 fixnum
           "the number of phases of the current tick that have begun; 0 between ticks" :export)
    (moments 0 fixnum
-            "the number of calls and acts, in the tick, of code that forks repeat"
+            "the number of calls and acts of code in the tick, which forks repeat"
             :export)
    (on-moment nil (or null function) "a function to call before MOMENTS is counted up, or NIL"
                                      :export)
@@ -119,7 +119,7 @@ a part of a robot. Signals WRONG-ARGUMENT for any other object.")
 ;;; others at the right moment, their order among the acts of plans must be known.
 
 (defun record-code-moment (timeline)
-  "Record that code is about to run in a tick of TIMELINE that changed the world. Forks repeat it."
+  "Record that code is about to run in a tick of TIMELINE that changed the world. Forks rerun this."
   (when (timeline-on-moment timeline) (funcall (timeline-on-moment timeline)))
   (incf (timeline-moments timeline)))
 
@@ -178,7 +178,7 @@ requests. Any thread may do so. Return nothing. Signals MISUSE if the run is ove
   (values))
 
 (defun post-again (request timeline)
-  "Put REQUEST, from the inbox of TIMELINE, back as the last. The world's thread calls this."
+  "Put REQUEST back into the inbox of TIMELINE, as the last. The world's thread calls this."
   (atomic-push request (timeline-inbox timeline)))
 
 (defun withdraw-request (request timeline)
@@ -189,7 +189,7 @@ requests. Any thread may do so. Return nothing. Signals MISUSE if the run is ove
           return t))
 
 (defun requested-inside-tick-p (request)
-  "True if REQUEST was made while a tick changed the world; if repeated, the tick makes it again."
+  "True if REQUEST was made while a tick changed the world. A repeated tick makes REQUEST again."
   (changing-phase-p (request-phase request)))
 
 ;; Requests made by a tick are not in the journal. Other threads may post during that tick, so the
@@ -206,7 +206,7 @@ first; in each group, the oldest comes first."
 ;;; Notifications.
 
 (defun notify-later (timeline function &rest arguments)
-  "When this tick of TIMELINE ends, call the function named FUNCTION, after those passed before."
+  "At the end of this tick of TIMELINE, call the function named FUNCTION, after earlier functions."
   (push (cons function arguments) (timeline-notifications timeline)))
 
 (defun next-notification (timeline)

@@ -21,7 +21,6 @@ the legend. Ways are drawn in this order, too: failed trials, which matter most,
   (clamp (/ 8 (max 1 count)) 12/100 6/10))
 
 (defun draw-way-polyline (canvas points look)
-  "Draw a line with LOOK through POINTS, x y ... in pixels."
   (destructuring-bind (marker color width dashes words) look
     (declare (ignore marker words))
     (with-color color
@@ -36,7 +35,6 @@ the legend. Ways are drawn in this order, too: failed trials, which matter most,
 (defconstant +end-opacity+ 8/10 "The opacity of the marker at the end of a way.")
 
 (defun draw-arrows-of (canvas ways)
-  "Draw arrowheads on the lines of WAYS, as many as fit without overlaps."
   (draw-way-arrows canvas (loop for way in ways
                             collect (make-way-line 0 (pieces-in-pixels (way-pieces way))
                                                    :color (second (outcome-look way))))))
@@ -72,7 +70,7 @@ points at which SNAPSHOT shows a robot."
         (draw-end-marker canvas (outcome-look way) (to-pixels x) (to-pixels y))))))
 
 (defun draw-ways (canvas ways)
-  "Draw WAYS so faint that many of them can be distinguished, above the dots of their jumps."
+  "Draw WAYS so faintly that many of them can be distinguished, above the dots of their jumps."
   (flet ((draw (function way)
            (with-opacity (canvas (way-opacity (length (ways-of-outcome (way-outcome way) ways))))
              (funcall function canvas way))))

@@ -165,7 +165,6 @@ and the other MOMENTS. If PART is NIL, return MOMENTS."
               (append notes (not-shown-note "Not shown, outside of this part" others))))))
 
 (defun run-picture-svg (snapshot ways moments &key limit title subtitle layers in-color scale)
-  "Return an SVG document of a run with WAYS and MOMENTS. SNAPSHOT shows the end of the run."
   (multiple-value-bind (spots notes)
       (spots-and-notes-in (snapshot-part snapshot) (abridge-failures moments) limit
                           (and (rest ways) t)

@@ -59,8 +59,8 @@ SEVERAL-P is true, texts name the robots."
             (if (plusp more) (subseq ticks 0 most) ticks) (and (plusp more) more))))
 
 (defun group-note (group most)
-  "Return a note about GROUP, a list of two elements: the number of its spot, or NIL; and a text
-with at most MOST ticks, or with all ticks if MOST is NIL."
+  "Return a note about GROUP. The note lists the number of the spot, or NIL, and a text with at most
+MOST ticks, or with all ticks if MOST is NIL."
   (list (and (moment-group-spot group) (spot-number (moment-group-spot group)))
         (format nil "~A: ~A"
                 (ticks-text (sort (mapcar #'moment-tick (moment-group-moments group)) #'<) most)
@@ -75,7 +75,7 @@ with at most MOST ticks, or with all ticks if MOST is NIL."
   "Lists (kind singular plural) of the words for moments of each kind.")
 
 (defun not-shown-note (words moments)
-  "Return a list of one note, WORDS and the counts of MOMENTS by kind; or NIL without MOMENTS."
+  "Return a list of a single note: WORDS and the counts of MOMENTS by kind. Without MOMENTS: NIL."
   (when moments
     (list (list nil (format nil "~A: ~{~A~^, ~}."
                             words
@@ -95,7 +95,7 @@ with at most MOST ticks, or with all ticks if MOST is NIL."
 failed.")
 
 (defun shorten-reason (reason)
-  "Return REASON, a text about why a plan failed, abridged and without code."
+  "Return an abridged REASON without code. REASON says why a plan failed."
   (let* ((prefix "Plan failure ")
          (own-p (eql 0 (search prefix reason)))
          (words (if own-p (string-downcase (subseq reason (length prefix))) reason))
@@ -126,8 +126,8 @@ failed.")
 
 (defun spots-and-notes (moments limit several-p reach)
   "Return two values: a list of the numbered spots of MOMENTS, and a list of at most LIMIT notes. A
-note is a list (number text); NUMBER may be NIL. Notes about the user's moments are always
-included, all others if LIMIT is NIL. For SEVERAL-P and REACH see GROUP-MOMENTS."
+note is a list (number text); NUMBER may be NIL. Notes about the user's moments are always included;
+if LIMIT is NIL, so are all others. For SEVERAL-P and REACH see GROUP-MOMENTS."
   (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-p))
          (own (count 0 all :key #'moment-group-weight))   ; the user's own have the weight 0
          (count (if limit (min (max limit own) (length all)) (length all)))
@@ -148,7 +148,6 @@ included, all others if LIMIT is NIL. For SEVERAL-P and REACH see GROUP-MOMENTS.
 (defconstant +ring-radius+ 4 "The radius of a ring around a spot without a thing, in pixels.")
 
 (defun draw-number (canvas x y text)
-  "Draw TEXT, a number, in a circle around X, Y."
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-circle canvas x y +number-radius+ t))
   (with-gcontext (draw-gcontext* :foreground black* :line-width 6/5)

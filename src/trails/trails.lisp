@@ -36,8 +36,8 @@ the latest point first" :writable))
     (extend-trail trail (robot-x robot) (robot-y robot))))
 
 (defun update-trails (simulation trails)
-  "Add the current positions of the robots of SIMULATION to TRAILS, a list of their trails. A robot
-without a trail gets one at the front. Return the list."
+  "Add the current positions of the robots of SIMULATION to TRAILS, a list of their trails. A new
+trail is added at the front for a robot without one. Return the list."
   (dolist (robot (simulation-robots simulation) trails)
     (update-trail (or (find robot trails :key #'trail-robot)
                       (first (push (make-trail robot) trails))))))
@@ -123,7 +123,6 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
       (write-string (csv-line (trajectory-row robot (simulation-tick simulation))) out))))
 
 (defun write-trajectory (journal out every until names)
-  "Replay JOURNAL up to the tick UNTIL, and write rows to OUT every EVERY ticks."
   (write-string (csv-line *trajectory-columns*) out)
   (flet ((look (simulation)
            (when (zerop (mod (simulation-tick simulation) every))
