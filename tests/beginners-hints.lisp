@@ -135,7 +135,7 @@
                           0 (first (rpl:fluent-value
                                     (svref driver:camera-designators* 0))))))))))
     (is-true (has-words-p (told) "designator is NIL" "The search for it is still under way"
-                          "(wait-for (vref camera-input* 0)) first"))
+                          "(wait-for (vref camera-input* 0))"))
     (is (not (search "under way"
                      (told '(rpl:wait-for (svref driver:camera-input* 0))))))))
 

@@ -76,8 +76,7 @@ MISUSE" :writable))
                 (mapcar #'unqualified-text (if (consp name) list (list list)))))))
 
 (defun plan-remedy (name)
-  "NAME was given as a plan but is not a plan. Return sentences about what to write instead; or
-NIL."
+  "NAME, given as a plan, is not a plan. Return sentences about what to write instead; or NIL."
   (flet ((say (control &rest arguments)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
     (cond ((and (consp name) (proper-list-p name))
