@@ -22,7 +22,7 @@
   (or (find-if (lambda (entry)
                  (and (= number (trace-entry-task entry)) (eq :start (trace-entry-event entry))))
                trace)
-      (reject-use "This trace has no task ~A. (plan-trace) returns its entries." number)))
+      (reject-use "This trace has no task ~A. (trace-of nil) returns all its entries." number)))
 
 (defun ancestor-entries (number trace)
   "Return the entries of TRACE for the starts of task NUMBER and tasks around it, innermost first."
