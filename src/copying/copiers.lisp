@@ -22,7 +22,6 @@ for the copy and true, or NIL and false" :writable)
   (options '() list "a plist of options; see COPIER-OPTION" :writable))
 
 (defun copier-option (copier key)
-  "Return the value of the option KEY of COPIER, or NIL."
   (getf (copier-options copier) key))
 
 (defun copied-run-value (copier symbol)
@@ -58,7 +57,7 @@ for the copy and true, or NIL and false" :writable)
   "A list of one element, the list of the copiers that are not in use.")
 
 (defconstant +reusable-copier-limit+ 20000
-  "The largest number of objects that a copier may have copied if it is to be reused.")
+  "A copier that has copied more objects than this is not reused.")
 
 (defun take-copier ()
   (loop for copiers = (car *idle-copiers*)
@@ -79,8 +78,8 @@ for the copy and true, or NIL and false" :writable)
     (atomic-push copier (car *idle-copiers*))))
 
 (defmacro with-copier ((copier &key environment options screen) &body body)
-  "Run BODY with COPIER bound to a copier with OPTIONS and SCREEN. ENVIRONMENT is an alist of the
-variables that the copied run has bound. Return the values of BODY."
+  "Run BODY with the variable COPIER bound to a copier. ENVIRONMENT is an alist of the variables
+that the copied run has bound; see REPLACE-OR-COPY for SCREEN. Return the values of BODY."
   `(let ((,copier (take-copier)))
      (setf (copier-environment ,copier) ,environment
            (copier-options ,copier) ,options
@@ -161,7 +160,7 @@ to share it, or a replacement. (forked x fork) returns the counterpart of anothe
                              value))))
 
 (defvar *shared-slots* '()
-  "Lists (type slot...): slots of structures without a kind, whose contents are never modified.")
+  "Lists (type slot...): structures that have no kind, and slots whose contents never change.")
 
 (defmacro define-shared-slots (type &rest slots)
   "Make a run share the contents of SLOTS, slots of structures of TYPE, with its forks."
@@ -180,8 +179,8 @@ to share it, or a replacement. (forked x fork) returns the counterpart of anothe
 
 (defstruct (copy-policy (:constructor make-copy-policy (way indices fresh)) (:copier nil))
   "How structures of a class are copied. WAY is :SHARE, :COPY, :METHOD (by a user's method) or :ASK
-(the caller, for SBCL's structures). INDICES are the numbers of the slots whose contents are copied
-too. FRESH lists pairs of functions (writer . initial), for slots that get initial values."
+(the caller chooses, for SBCL's structures). INDICES are the numbers of the slots whose contents are
+copied too. FRESH lists pairs of functions (writer . initial), for slots that get initial values."
   (way :copy :type (member :share :copy :method :ask) :read-only t)
   (indices #() :type simple-vector :read-only t)
   (fresh '() :type list :read-only t))

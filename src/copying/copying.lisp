@@ -30,7 +30,7 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
           (t (begin-copy value copier)))))
 
 (defun replace-or-copy (value copier)
-  "Return the replacement for VALUE that the screen, a function in COPIER, gives, or a copy."
+  "If the screen of COPIER, a function, replaces VALUE, return the replacement; else a copy."
   (multiple-value-bind (instead screened-p) (funcall (copier-screen copier) value)
     (if screened-p
         (record-copy value instead copier)
@@ -127,7 +127,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
                (t (note (make-value-cell (cell-value value)))))))))
 
 (defun copy-function (function copier)
-  "Return the copy of FUNCTION, not a closure: FUNCTION itself, unless its class is a user's."
+  "Return FUNCTION, which is not a closure, or its replacement if its class is a user's."
   (cond ((typep function 'generic-function) (copy-plan-value function copier))
         ((typep function 'standard-object) (chosen-replacement function copier))
         (t function)))
@@ -135,7 +135,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
 ;;; Replacing references in copies.
 
 (defun replace-list-references (list copier)
-  "Replace the references in LIST, a copied list, by copies, up to a tail that was copied before."
+  "LIST is a copied list. Replace its references by copies, up to a tail that was copied before."
   (declare #.*hot* (type copier copier))
   (loop
     (setf (car list) (forked (car list) copier))
@@ -208,8 +208,8 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
 ;;; Plain values, outside of any run.
 
 (defun copied-by-default-p (value)
-  "True if VALUE is a list, array, table, closure or closed-over variable, or if its class is a
-user's without a method of COPY-PLAN-VALUE."
+  "True if VALUE is a list, array, table, closure or closed-over variable, or an instance of a
+user's class that has no method of COPY-PLAN-VALUE."
   (typecase value
     ((or cons array hash-table) t)
     (condition nil)
@@ -219,9 +219,8 @@ user's without a method of COPY-PLAN-VALUE."
     (t (and (value-cell-p value) (not (exit-cell-p value))))))
 
 (defun copy-values (list instead-of)
-  "Return a copy of LIST, with copies of the plain values that it contains, at any depth. If two
-values share an object, their copies share the copy. Other objects are replaced by the value of
-INSTEAD-OF, called with the object."
+  "Return a deep copy of LIST. If two values share an object, their copies share the copy. An object
+for which COPIED-BY-DEFAULT-P is false is replaced by the value of INSTEAD-OF, called with it."
   (if (every (lambda (value) (typep value '(or number symbol character))) list)
       list
       (with-copier (copier :screen (lambda (value)
@@ -266,7 +265,6 @@ circular, too long or too deep."
   (multiple-value-bind (copy endless-p) (copy-lists datum)
     (when endless-p
       (reject-argument operator name "what was given"
-                       (format nil "proper lists, with at most ~D elements in all, nested at most ~
-                                    ~D deep"
+                       (format nil "proper lists of at most ~D elements, nested at most ~D deep"
                                +longest-argument+ +deepest-argument+)))
     copy))

@@ -11,8 +11,8 @@
 
 (defgeneric reference (object)
   (:documentation
-   "Return plain data that identifies OBJECT in its run: (KIND argument...), a keyword and data; or
-NIL. Journals contain such data; DEREFERENCE returns the object that they identify in another run.")
+   "Return a list of a keyword and plain data that identifies OBJECT in its run, or NIL. Journals
+contain such lists. DEREFERENCE returns the object that a list identifies in another run.")
   (:method (object) (declare (ignore object)) nil))
 
 (defgeneric digest-state (object digest)
@@ -121,7 +121,7 @@ closures, structures or instances."
   (and (member (kind-slot-role slot) '(:fixed :state :memory)) t))
 
 (defun plain-slot-description (name type)
-  "Return a description of NAME, a slot with values of TYPE in a structure without a kind."
+  "Return a kind slot that describes the slot NAME, of TYPE, in a structure without a kind."
   (make-kind-slot name :fixed type "" nil nil
                   (constantly nil)
                   (lambda (object) (slot-value object name))
@@ -185,5 +185,4 @@ type; so do not print the object."
   `(unless ,test (signal-contradiction ,control ,@arguments)))
 
 (defun proper-list-of-p (predicate object)
-  "True if OBJECT is a proper list and PREDICATE is true for each of its elements."
   (and (proper-list-p object) (every predicate object)))

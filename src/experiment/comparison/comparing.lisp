@@ -14,8 +14,8 @@
     (remove-duplicates (list* "success" "ticks" measures) :test #'string= :from-end t)))
 
 (defun measures-to-compare (operator results measure)
-  "Return the names of the measures that OPERATOR compares in RESULTS, a list of results: those in
-MEASURE, or all measures that RESULTS have in common if MEASURE is NIL."
+  "RESULTS is a list of results. Return the names of the measures to compare: those in MEASURE, or
+all that RESULTS have in common if MEASURE is NIL. Errors name OPERATOR."
   (let ((known (common-measures results)))
     (flet ((known-name (name)
              (unless (typep name '(or symbol string))
@@ -29,8 +29,8 @@ MEASURE, or all measures that RESULTS have in common if MEASURE is NIL."
 ;;; PAIRS are lists of two samples of one table that differ only in the factor PLACE, if not NIL.
 
 (defun contrast-of-conditions (results first second place)
-  "Return a contrast, still without differences, of the samples FIRST and SECOND of RESULTS. Factors
-with equal values make the contrast's WHERE; the other factors make the names of the two sides."
+  "Return a contrast of the samples FIRST and SECOND of RESULTS; its differences are not set yet.
+Factors with equal values make the contrast's WHERE; the other factors name its two sides."
   (loop for other in (if place (cons place (other-factors results place)) (naming-factors results))
         for factor = (nth other (results-factors results))
         for a = (factor-text other first)
@@ -98,8 +98,7 @@ comparison to STREAM unless that is NIL."
       :conditions contrasts
       :overall (and place (overall-contrast-needed-p contrasts)
                     (overall-contrasts results pairs place names)))
-     stream "These conditions have no seeds in common. Run more trials of the experiment in the ~
-             same directory.")))
+     stream "These conditions have no common seeds. Run more trials in the same directory.")))
 
 (defun check-stream (operator stream)
   (unless (or (null stream) (and (streamp stream) (output-stream-p stream)))
@@ -111,14 +110,16 @@ comparison to STREAM unless that is NIL."
 seed. Return a comparison. Unless STREAM is NIL, print the comparison as PRINT-COMPARISON does.
 
 The comparison covers success, the ticks of trials that succeed under both conditions, and all
-measures that are numbers or booleans; or only MEASURE, a name or list of names. Only seeds that
-both conditions have count. A trial that ended in an error or at its limit did not succeed.
+measures that are numbers or booleans. If you give MEASURE, a name or list of names, only those are
+compared. Only seeds that both conditions have count. A trial that ended in an error or at its limit
+did not succeed.
 
 Give a condition by its number, from 1, by its name, or by an unambiguous part of its name, such as
 one value of a factor. :ALL as SECOND compares FIRST with each other condition. FIRST and SECOND may
-be values of one factor. If several conditions have these values, each condition with FIRST is
-compared with the otherwise equal condition with SECOND, and all together as in COMPARE-LEVELS.
-Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word is ambiguous or nothing can be compared."
+be values of one factor. If several conditions have these values, each condition with the value
+FIRST is compared with the condition that differs from it only in having SECOND. All pairs are also
+compared together, as in COMPARE-LEVELS. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a word
+is ambiguous or nothing can be compared."
   (check-argument compare-conditions results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-stream 'compare-conditions stream)
@@ -154,8 +155,8 @@ pairs together, and separately for all tests over several pairs."
 ;;; a sample of the newer table and one of the older.
 
 (defun changed-parts-of-pair (pair after before)
-  "Return the names of the fingerprint parts that differ between the conditions of PAIR, read from
-experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is missing."
+  "Return the names of the fingerprint parts that differ between the samples in PAIR, as listed by
+experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if one lacks the parts."
   (let ((now (recorded-parts (sample-condition (first pair)) after))
         (then (recorded-parts (sample-condition (second pair)) before)))
     (if (and now then) (changed-parts then now) :unknown)))
@@ -171,9 +172,8 @@ experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is
 
 (defun experiment-change-lines (after before)
   (let ((now (recorded-form after)) (then (recorded-form before)))
-    (cons (format nil "WARNING: the experiment itself is not the same in both tables. What it ~
-                       does, measures or counts as success may differ, so differences below need ~
-                       not be due to the code.")
+    (cons (format nil "WARNING: the experiment itself is not the same in both tables. Differences ~
+                       below may be due to what it does, measures or counts as success.")
           (append (lines-only-in then now "before") (lines-only-in now then "now")))))
 
 (defun changed-parts-text (parts conditions)
@@ -190,14 +190,13 @@ experiment.txt in the directories AFTER and BEFORE. Return :UNKNOWN if a list is
                      sum (loop for (i . j) in (common-trials sample other)
                                count (not (same-row-p sample i other j))))))
     (unless (zerop count)
-      (list (format nil "WARNING: nevertheless the rows of ~D trial~:P differ. Either rows have ~
-                         been changed, or something outside of the fingerprints affects these ~
-                         trials, such as shared data, a clock or a file. Do not rely on either ~
-                         table." count)))))
+      (list (format nil "WARNING: nevertheless the rows of ~D trial~:P differ. Rows were edited, ~
+                         or the trials depend on something that fingerprints do not cover, such as ~
+                         shared data, a clock or a file. Do not rely on either table." count)))))
 
 (defun code-change-lines (pairs after before)
-  "Return sentences on the code and data of the conditions in PAIRS that differ between two tables,
-as listed by experiment.txt in the directories AFTER and BEFORE. Either directory may be NIL."
+  "Return sentences that say which code and data of PAIRS differ between two tables, as listed by
+experiment.txt in the directories AFTER and BEFORE. Either directory may be NIL."
   (let* ((changed (remove-if (lambda (pair)
                                (apply #'string= (mapcar #'sample-fingerprint pair)))
                              pairs))
@@ -257,11 +256,10 @@ the names of conditions that only FIRST or only SECOND has."
   (let ((names (mapcar (lambda (results)
                          (if (results-samples results)
                              (sample-experiment (first (results-samples results)))
-                             (reject-use "One of the tables to compare has no rows.")))
+                             (reject-use "One of the tables has no rows. Run the experiment.")))
                        (list before after))))
     (unless (apply #'string= names)
-      (reject-use "One table is of the experiment ~A and the other of ~A. Give two tables ~
-                   of one experiment."
+      (reject-use "The tables are of two experiments, ~A and ~A. Give two tables of one."
                   (first names) (second names)))
     (first names)))
 
@@ -288,14 +286,14 @@ the names of conditions that only FIRST or only SECOND has."
 (addition compare-results)
 (defun compare-results (before after &key measure (stream *standard-output*))
   "Compare two tables of one experiment, made by two versions of the code. BEFORE and AFTER are
-directories or results. Trials of equal condition and seed are compared, per condition and over all
-conditions, where each seed counts once. Differences are AFTER minus BEFORE.
+directories or results. Trials with equal condition and seed are compared, for each condition and
+over all conditions. Over all, each seed counts once. Differences are AFTER minus BEFORE.
 
 The comparison tells which conditions got better or worse, and how many trials are identical, that
 is, have rows with equal digest, outcome and measures. It also tells what has changed, according to
 experiment.txt beside the tables, and warns if the experiment itself has changed. MEASURE, STREAM,
-the returned value and the errors are as for COMPARE-CONDITIONS. Signals DAMAGED-TABLE and MISUSE,
-too, as READ-RESULTS does, and MISUSE if the tables are of different experiments."
+the returned value and the errors are as for COMPARE-CONDITIONS. Also signals the errors of
+READ-RESULTS, and MISUSE if the tables are of different experiments."
   (check-stream 'compare-results stream)
   (multiple-value-bind (old old-name) (results-and-name 'compare-results 'before before)
     (multiple-value-bind (new new-name) (results-and-name 'compare-results 'after after)

@@ -15,10 +15,9 @@
   (errors-first 0 integer "how many paired trials of the first side ended with an error" :writable)
   (errors-second 0 integer "how many paired trials of the second side ended with an error"
   :writable)
-  (same 0 integer "the number of pairs in which both trials are the same run to the last bit, with
-equal rows" :writable :addition)
-  (differences '() list "a list of the differences in success, ticks and measures; none if all pairs
-are the same runs" :writable :addition))
+  (same 0 integer "how many pairs of trials are the same to the last bit" :writable :addition)
+  (differences '() list "a list of the differences in success, ticks and measures; NIL if all rows
+are equal" :writable :addition))
 
 (addition comparison-p)
 (define-record (comparison (:constructor make-comparison
@@ -26,14 +25,14 @@ are the same runs" :writable :addition))
   "A comparison of conditions of an experiment, or of two versions of an experiment.
 COMPARE-CONDITIONS, COMPARE-LEVELS and COMPARE-RESULTS return comparisons."
   (experiment "" string)
-  (sides nil (or null string) "a text on what is compared with what, or NIL")
+  (sides nil (or null string) "a text that names both sides, or NIL")
   (kind :conditions keyword ":CONDITIONS or :VERSIONS")
   (contrasts '() list
              "a list of the pairs of conditions, or versions, that were compared" :addition)
-  (overall '() list "a list of the contrasts over several conditions, one for each two values, or
-for the two versions; each seed counts once in them" :addition)
-  (changes '() list "a list of sentences on what affects the trials of one version but not of the
-other, by the texts beside the tables; NIL of conditions" :addition)
+  (overall '() list "a list of contrasts over all conditions, one for each pair of values, or one
+for the two versions; each seed counts once" :addition)
+  (changes '() list "a list of sentences on what differs between two versions, according to
+experiment.txt beside the tables; NIL if conditions are compared" :addition)
   (notes '() list))
 
 (defmethod print-object ((contrast contrast) stream)
@@ -58,7 +57,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
     (nreverse pairs)))
 
 (defun comparable-pairs (name first second &optional (pairs (common-trials first second)))
-  "Return those PAIRS of trials of the samples FIRST and SECOND with comparable values of NAME."
+  "FIRST and SECOND are samples. Return those PAIRS of trials that have comparable values of NAME."
   (if (string-equal name "ticks")
       (remove-if-not (lambda (pair)
                        (and (success-p (aref (sample-outcomes first) (car pair)))
@@ -91,7 +90,7 @@ other, by the texts beside the tables; NIL of conditions" :addition)
           (t nil))))
 
 (defun set-left-out-count (difference pairs)
-  "Set the number of pairs that DIFFERENCE lacks of all PAIRS, a number. Return DIFFERENCE, or NIL."
+  "Unless DIFFERENCE is NIL, record how many of PAIRS pairs it leaves out. Return DIFFERENCE."
   (when difference
     (setf (paired-left-out difference) (- pairs (paired-trials difference))))
   difference)
@@ -209,7 +208,7 @@ sample of RESULTS and a sample of OTHER-RESULTS."
           finally (return (values firsts seconds)))))
 
 (defun overall-difference (name values)
-  "Return the difference in the measure NAME, from VALUES, lists (seed a b); NIL for texts."
+  "VALUES are lists (seed a b). Return their difference in the measure NAME, or NIL for texts."
   (flet ((all (test) (loop for (nil a b) in values always (and (funcall test a) (funcall test b))))
          (difference (kind values)
            (multiple-value-bind (firsts seconds) (means-by-seed values)

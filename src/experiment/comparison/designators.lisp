@@ -8,19 +8,19 @@
 (defun factor-text (place sample) (nth place (sample-texts sample)))
 
 (defun levels (results place)
-  "Return the texts of the levels in RESULTS of the factor with index PLACE, in the table's order."
+  "Return the texts of the levels that the factor with index PLACE has in RESULTS, in table order."
   (remove-duplicates (mapcar (lambda (sample) (factor-text place sample)) (results-samples results))
                      :test #'string= :from-end t))
 
 (defun case-determines-factor-p (place samples)
-  "True if the first factor of SAMPLES, the named cases, determines the factor with index PLACE."
+  "True if the named case, the first factor of SAMPLES, determines the factor with index PLACE."
   (loop for sample in samples
         always (loop for other in samples
                      always (or (string/= (factor-text 0 sample) (factor-text 0 other))
                                 (string= (factor-text place sample) (factor-text place other))))))
 
 (defun naming-factors (results)
-  "Return the indices of the factors of RESULTS that no case determines, for names of conditions."
+  "Factors of RESULTS that no case determines make the names of conditions. Return their indices."
   (loop with case-p = (equal "case" (first (results-factors results)))
         for place from 0 below (length (results-factors results))
         unless (and case-p (plusp place) (case-determines-factor-p place (results-samples results)))
@@ -36,7 +36,7 @@
       (reject-name "factor" (princ-to-string factor) (results-factors results))))
 
 (defun find-level (levels value)
-  "Return the one of LEVELS that is VALUE, or the first if VALUE is NIL. Signals UNKNOWN-NAME."
+  "Return the one of LEVELS that VALUE names; NIL names the first. Signals UNKNOWN-NAME."
   (if (null value)
       (first levels)
       (let ((text (if (stringp value) value (value-text value))))
@@ -59,7 +59,7 @@
 ;;; Pairs.
 
 (defun other-factors (results place)
-  "Return the indices of factors that must be equal to compare conditions by the factor PLACE."
+  "Return the indices of factors in which conditions that are compared by PLACE must be equal."
   (let ((naming (naming-factors results)))
     (remove place (if (member place naming)
                       naming
@@ -99,8 +99,8 @@ sample of a pair has the level BASE; the first has LEVEL, or any other level if 
   (full-level-name (nth (first level) (results-factors results)) (second level)))
 
 (defun numbered-sample (results designator)
-  "Return DESIGNATOR if it is a sample of RESULTS; the sample with that number, from 1, if
-DESIGNATOR is an integer; else NIL."
+  "If DESIGNATOR is a sample of RESULTS, return DESIGNATOR. If DESIGNATOR is an integer, return the
+sample with that number, from 1. Else return NIL."
   (let ((samples (results-samples results)))
     (cond ((integerp designator)
            (and (<= 1 designator (length samples)) (nth (1- designator) samples)))
@@ -110,7 +110,7 @@ DESIGNATOR is an integer; else NIL."
   (or (string-equal word level) (string-equal word (full-level-name factor level))))
 
 (defun designated-levels (results designator)
-  "Return lists (place level) that DESIGNATOR can mean in RESULTS; NIL for a number or sample."
+  "Return lists (place level) that DESIGNATOR can mean; NIL if it is a number or sample of RESULTS."
   (unless (numbered-sample results designator)
     (let ((word (designator-text designator)))
       (exact-or-partial-matches
@@ -133,8 +133,8 @@ samples that have the level WORD, or else the samples whose name contains WORD."
                                     (search word (sample-condition sample) :test #'char-equal))))))
 
 (defun designated-samples (results designator)
-  "Return the samples of RESULTS that DESIGNATOR can mean. DESIGNATOR is a sample, or a condition's
-number, from 1, or its name, or a part of the name. Signals UNKNOWN-NAME if no sample fits."
+  "Return the samples of RESULTS that DESIGNATOR can mean. DESIGNATOR is a sample, or the number
+(from 1), the name or a part of the name of a condition. Signals UNKNOWN-NAME if no sample fits."
   (let ((samples (results-samples results)) (one (numbered-sample results designator))
         (word (designator-text designator)))
     (cond (one (list one))
@@ -182,8 +182,8 @@ BASE is NIL if SECOND is :ALL."
           append (pairs-differing-in-factor results place level other))))
 
 (defun pairs-of-levels (results first second)
-  "Return two values: pairs of samples that differ only in one factor, with the levels FIRST and
-SECOND; and the index of this factor. Return NIL if FIRST and SECOND are no levels. Signals MISUSE
+  "Return pairs of samples that differ only in one factor, where they have the levels FIRST and
+SECOND, and the index of the factor. Return NIL if FIRST and SECOND are not levels. Signals MISUSE
 if several factors have these levels."
   (let ((level-pairs (candidate-level-pairs results first second)))
     (when (rest level-pairs)
@@ -208,8 +208,8 @@ if several factors have these levels."
 
 ;; 4 and 8 may mean values of a factor, or the fourth and the eighth condition.
 (defun level-pair-of-integers (results first second)
-  "Return the level pair (place level base) of FIRST and SECOND if these are integers and both are
-values of one factor; else NIL."
+  "If FIRST and SECOND are integers and both are levels of one factor, return the level pair (place
+level base). Else return NIL."
   (when (and (integerp first) (integerp second) (/= first second))
     (let ((level (designator-text first)) (base (designator-text second)))
       (loop for place in (varying-factors results)
@@ -236,8 +236,8 @@ only be levels of one factor. Signals MISUSE if they could also be numbers of co
           (t (values (designator-text first) (designator-text second))))))
 
 (defun designated-pairs (results first second)
-  "Return two values: the pairs of samples of RESULTS for the designators FIRST and SECOND; and the
-index of the factor, if FIRST and SECOND are levels of several conditions. SECOND may be :ALL."
+  "Return the pairs of samples of RESULTS that the designators FIRST and SECOND mean. If these are
+levels that several conditions have, also return the factor's index. SECOND may be :ALL."
   (multiple-value-bind (first second) (distinguish-levels-from-numbers results first second)
     (multiple-value-bind (pairs place)
         (and (or (rest (designated-samples results first))

@@ -13,7 +13,7 @@
                                        &optional table rounding)))
   "The difference between two conditions in one measure."
   (measure "" string
-           "what is compared: success, ticks or the name of a measure, a string" :addition)
+           "what is compared, a string: success, ticks or the name of a measure" :addition)
   (kind :mean (member :rate :mean) "the kind of the numbers, :RATE or :MEAN")
   (trials 0 integer "how many pairs of trials are counted" :addition)
   (first nil t "the rate, from 0 to 1, or mean of the first side; NIL if there are no trials"
@@ -55,8 +55,8 @@ conditions are corrected separately from tests of single conditions.")
 ;;; Rates.
 
 (defun count-true-pairs (firsts seconds)
-  "FIRSTS and SECONDS are lists of booleans. Return a list of four counts: the pairs in which both,
-only the first, only the second, and neither are true."
+  "FIRSTS and SECONDS are lists of booleans. Return a list of four numbers: how many pairs are true
+on both sides, only on the first, only on the second, and on neither."
   (let ((both 0) (first 0) (second 0) (neither 0))
     (loop for a in firsts
           for b in seconds
@@ -106,7 +106,6 @@ fewer draws for many numbers; the smallest possible p does not depend on the dra
     (values (permutation-test numbers :resamples draws :rare-too t))))
 
 (defun mean-difference (measure firsts seconds &optional (kind :mean))
-  "Return the difference in MEASURE between the means of FIRSTS and SECONDS, lists of numbers."
   (if (null firsts)
       (make-difference measure kind 0 nil nil nil nil nil)
       (let* ((differences (mapcar (lambda (a b) (- (rational a) (rational b))) firsts seconds))

@@ -6,11 +6,11 @@
 ;;; left of the point: the second digit of the interval's width, or if that is 0 of the difference.
 
 (defun decimals-of-second-digit (size)
-  "Return the position after the decimal point of the second significant digit of SIZE."
+  "Return how many decimals SIZE needs to show two significant digits."
   (- 1 (decimal-exponent (rational size))))
 
 (defun useful-decimals (difference)
-  "Return to how many decimals to round the numbers of DIFFERENCE, a difference of means."
+  "Return the number of decimals for the numbers of DIFFERENCE, a difference of means."
   (let* ((low (paired-low difference)) (high (paired-high difference))
          (width (if low (subtract-numbers high low) 0))
          (reach (find-if-not #'zerop (list (paired-estimate difference)
@@ -28,7 +28,7 @@
     (format nil "~Ae~D" (strip-trailing-zeros text) power)))
 
 (defun mean-text (value decimals)
-  "Return the text of VALUE, rounded to DECIMALS decimals; with a power of ten if it is far from 1."
+  "Return VALUE as text, rounded to DECIMALS decimals, with a power of 10 if VALUE is far from 1."
   (let* ((unit (expt 10 (- decimals)))
          (number (* unit (round (rational value) unit))))
     (cond ((and (zerop number) (< 9 decimals)) "0")
@@ -56,7 +56,7 @@
   (string-left-trim "0" (format nil "~,VF" (if (< p .0995d0) 3 2) p)))
 
 (defun p-text (p)
-  "Return the text of the probability P after the letter p in a sentence, such as = .032 or < .001."
+  "Return what follows the letter p in a sentence on the probability P, such as = .032 or < .001."
   (cond ((null p) "-")
         ((< p .001d0) "< .001")
         ((> p .995d0) "= 1")
@@ -66,7 +66,7 @@
   (string-left-trim "= " (p-text p)))
 
 (defun value-with-unit-text (difference value)
-  "Return the text of VALUE, a number of DIFFERENCE. Rates have the unit points."
+  "Return the text of VALUE, a number of DIFFERENCE. The unit of rates is points."
   (let ((text (funcall (number-formatter difference) value)))
     (format nil "~A~:[~; point~:[s~;~]~]" text (eq :rate (paired-kind difference))
             (member text '("1" "-1") :test #'string=))))
@@ -78,7 +78,7 @@
             (funcall write (paired-low difference)) (funcall write (paired-high difference)))))
 
 (defun p-values-text (difference)
-  "Return a text with p of DIFFERENCE, both corrected for the number of tests and uncorrected."
+  "Return a text with both p values of DIFFERENCE: corrected for the number of tests, and alone."
   (let ((p (paired-p difference)) (adjusted (paired-adjusted-p difference))
         (tests (paired-tests difference)))
     (format nil "p ~A~:[~; as one of ~D tests~@[ (~A alone)~]~]" (p-text adjusted)
@@ -128,11 +128,11 @@
         when (<= (* tests (smallest-possible-p seeds)) 1/20) return seeds))
 
 (defun too-few-seeds-text (difference)
-  "Return a text on the seeds needed if DIFFERENCE has too few for a significant p; else NIL."
+  "If DIFFERENCE has too few seeds for a significant p, return a text that asks for more; else NIL."
   (let ((seeds (paired-trials difference)) (tests (paired-tests difference)))
     (when (< seeds (seeds-needed tests))
-      (format nil "; over ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
-                   ~D or more~@[, or compare fewer measures~]"
+      (format nil "; with ~D seed~:P p cannot be below ~A~[~;~:;, too much for ~:*~D tests~]: run ~
+                   ~D or more seeds~@[, or compare fewer measures~]"
               seeds (probability-text (smallest-possible-p seeds)) tests (seeds-needed tests)
               (< 1 tests)))))
 
@@ -212,9 +212,9 @@
 (addition comparison-verdicts)
 (defun comparison-verdicts (comparison)
   "Return the result of COMPARISON as a list of sentences. For two versions, the first sentence says
-how many conditions got better or worse, and how many trials are identical. The next sentences,
-about all conditions together, if there are several, and each pair, say which side succeeds more
-often, takes more ticks and so on, with p, both rates or means, and the difference with its 95 %
+how many conditions got better or worse, and how many trials are identical. The next sentences say
+which side succeeds more often, takes more ticks and so on: first over all conditions, if there are
+several, then for each pair. They give p, both rates or means, and the difference with its 95 %
 interval. A difference is reported if p, corrected for all tests (Holm), is at most .05. Otherwise
 the sentence says how large the difference can be, with the interval's confidence. If the interval
 leaves out 0, the sentence says why p decides, and how many seeds are needed for so many tests.
@@ -231,7 +231,8 @@ Tests over all conditions are corrected separately. Each interval is for one dif
 ;;; What was left out.
 
 (defun side-counts-text (contrast first second)
-  "Return a text with FIRST and SECOND, trial counts of the sides of CONTRAST; NIL if both are 0."
+  "FIRST and SECOND are numbers of trials of CONTRAST's sides. Return them as text, or NIL if both
+are 0."
   (let ((words (loop for count in (list first second)
                      for name in (list (contrast-first contrast) (contrast-second contrast))
                      when (plusp count) collect (format nil "~D of ~A" count name))))

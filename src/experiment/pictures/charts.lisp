@@ -18,7 +18,7 @@ values are the names of series, if there is only one such factor."
 ;;; Factors.
 
 (defun x-axis-factor (results)
-  "Return the factor on the x axis of pictures of RESULTS, or NIL if nothing varies."
+  "Return the index of the factor on the x axis of pictures of RESULTS, or NIL if nothing varies."
   (let ((free (varying-factors results)))
     (or (find-if (lambda (place) (every #'number-from-text (levels results place))) free)
         (first free))))
@@ -29,7 +29,7 @@ values are the names of series, if there is only one such factor."
 ;;; Series and panels.
 
 (defun factor-values-name (sample places factors)
-  "Return the name of SAMPLE from the factors with the indices PLACES; NIL if there are none."
+  "Name SAMPLE by its levels of the factors with indices PLACES. Return NIL if PLACES is empty."
   (and places
        (level-names (loop for place in places collect (nth place factors))
                     (loop for place in places collect (factor-text place sample)))))
@@ -61,7 +61,7 @@ values are the names of series, if there is only one such factor."
                             title chunk)))
 
 (defun panels (samples places factors &optional where)
-  "Return the fewest panels for SAMPLES. The FACTORS with the indices PLACES make the series."
+  "Return as few panels as SAMPLES need. The FACTORS with the indices PLACES make the series."
   (let ((series (group-series samples places factors)) (title (series-title places factors)))
     (cond ((<= (length series) +most-series+) (list (make-panel where title series)))
           ((null (rest places)) (split-into-panels series where title))
@@ -195,7 +195,7 @@ values are the names of series, if there is only one such factor."
 ;;; Survival. A trial without success is never done: it counts until the end, not censored earlier.
 
 (defun tick-limit (results)
-  "Return the tick limit of the experiment of RESULTS; if unknown, the most ticks of any trial."
+  "Return the tick limit of RESULTS' experiment, or the most ticks of a trial if it is not loaded."
   (let ((experiment (find-experiment (sample-experiment (first (results-samples results))) nil)))
     (if experiment
         (experiment-limit experiment)
@@ -264,8 +264,8 @@ sample with the first sample, and return NIL as the second value."
               collect (list other first)))))
 
 (defun comparison-by-factor (results place measure)
-  "Return the comparison of RESULTS by the factor PLACE in MEASURE, as COMPARE-LEVELS makes it; NIL
-if there is nothing to compare."
+  "Compare RESULTS in MEASURE by the factor with index PLACE, as COMPARE-LEVELS does. Return the
+comparison, or NIL if there is nothing to compare."
   (multiple-value-bind (pairs equal-p) (pairs-by-factor results place)
     (let ((pairs (remove-if-not (lambda (pair) (apply #'common-trials pair)) pairs)))
       (and pairs

@@ -5,7 +5,7 @@
 (defparameter *picture-kinds*
   '((:success . success-pictures) (:ticks . ticks-pictures) (:measures . measure-pictures)
     (:survival . survival-pictures) (:differences . difference-pictures))
-  "An alist from keys of SAVE-RESULT-PICTURES to functions from results and summaries to pictures.")
+  "An alist from kinds of pictures to functions of results and summaries that make the pictures.")
 
 ;;; Files are named after their contents.
 
@@ -37,9 +37,9 @@
 (addition save-result-pictures)
 (define-with-keywords save-result-pictures
     (results directory &key (kind :svg) (which (mapcar #'first *picture-kinds*)))
-  "Save pictures of RESULTS in DIRECTORY, created if necessary. Return a list of the files, which
-are named after what they show. KIND is :SVG or, if the program rsvg-convert is installed, :PNG.
-WHICH is a list of some of these:
+  "Save pictures of RESULTS in DIRECTORY, which is created if necessary. Return a list of the files,
+which are named after what they show. KIND is :SVG or, if the program rsvg-convert is installed,
+:PNG. WHICH is a list of some of these:
   :SUCCESS      how often trials succeed, for each condition, with 95 % intervals
   :TICKS        the ticks of trials that succeed: medians, with 95 % intervals
   :MEASURES     measures: rates, or means and all numbers
@@ -112,8 +112,8 @@ or the directory cannot be made."
   "Draw the world of CONDITION of EXPERIMENT, with the paths of robots in TRIALS, into FILE. TRIALS
 is N, for the first N trials, or a list of trial numbers. An existing FILE is replaced. Colours show
 the outcome of each trial; markers show where trials ended. The trials are run again. CONDITION is
-as for FIND-CONDITION. PART (left top right bottom), in cells, is the part of the map, by default
-all. TITLE replaces the experiment's question. FILE and the other arguments are those of
+as for FIND-CONDITION. PART (left top right bottom), in cells, is the part of the map to draw, by
+default all. TITLE replaces the experiment's question. FILE and the other arguments are those of
 SAVE-PICTURE. Return the file's truename. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if FILE
 is a PNG file and rsvg-convert is missing."
   (declare (ignore part title layers in-color scale))
@@ -175,7 +175,7 @@ is a PNG file and rsvg-convert is missing."
   (remove nil (mapcar (lambda (contrast) (find-difference measure contrast)) contrasts)))
 
 (defun tests-text (contrasts measure)
-  "Return a text on the number of tests for which p of MEASURE in CONTRASTS is corrected; or NIL."
+  "Return a text on the number of tests for which p of MEASURE in CONTRASTS is corrected, or NIL."
   (let ((tested (remove-if-not #'counts-as-test-p (shown-differences contrasts measure))))
     (when tested
       (let ((tests (paired-tests (first tested))))

@@ -41,7 +41,7 @@
     (float (* step (round (rational value) step)) 1d0)))
 
 (defun value-on-scale (low high scale share)
-  "Return the number at SHARE, from 0 to below 1, of the way from LOW to HIGH on SCALE."
+  "SHARE is from 0 to below 1. Return the number at this share of the range LOW to HIGH on SCALE."
   (ecase scale
     (:integer (+ low (floor (* (rational share) (- (1+ high) low)))))
     (:log (let* ((start (logarithm (float low 1d0)))
@@ -114,13 +114,13 @@ each of its ranges. Equal points count once; ranges of few integers give equal p
           do (reject-clause definition clause (format nil "one clause ~(~S~) only" key))))
 
 (defun clause-arguments (key clauses)
-  "Return two values: the rest of the clause KEY, and whether CLAUSES has such a clause."
+  "Return two values: the arguments of the clause KEY, and whether CLAUSES has such a clause."
   (let ((clause (find key clauses :key #'first)))
     (values (rest clause) (and clause t))))
 
 (defun check-elements (definition clause test &optional (expected (clause-usage (first clause))))
-  "Signal MALFORMED-DEFINITION for the first element after the key of CLAUSE that fails TEST, or for
-CLAUSE if there are no elements."
+  "Signal MALFORMED-DEFINITION if CLAUSE has only a key, or for the first of its other elements that
+fails TEST."
   (unless (rest clause) (reject-by-usage definition clause))
   (dolist (element (rest clause))
     (unless (funcall test element) (reject-clause definition element expected))))
@@ -155,9 +155,8 @@ CLAUSE if there are no elements."
 (defun check-factor-name (definition part)
   (unless (or (keyword-factor-p (first part)) (can-vary-p (first part)))
     (reject-clause definition part
-                   (format nil "something to vary that is a parameter, :robots, :thinking, or a ~
-                                variable of your own; ~(~A~) is ~:[no name~;Lisp's or the ~
-                                simulator's~]"
+                   (format nil "something to vary: a parameter, :robots, :thinking, or your own ~
+                                variable; ~(~A~) is ~:[no name~;Lisp's or the simulator's~]"
                            (safe-text (first part)) (and (first part) (symbolp (first part)))))))
 
 (defun check-factor (definition part)
@@ -168,8 +167,8 @@ CLAUSE if there are no elements."
   (let ((list (find-if (lambda (form) (typep form '(cons number))) (rest part))))
     (when list
       (reject-clause definition part
-                     (format nil "values one by one, as in (~(~A~)~{ ~S~}): ~S is no form that has ~
-                                  a value" (first part) list list))))
+                     (format nil "values one by one, as in (~(~A~)~{ ~S~}): ~S is not a ~
+                                  form" (first part) list list))))
   (check-factor-name definition part))
 
 (defun check-range (definition range)

@@ -7,11 +7,11 @@
 ;;; Expanding.
 
 (defun value-form (name form)
-  "Return a form that evaluates FORM, a value of NAME. Lists for :THINKING need no quote."
+  "Return a form for the value FORM of the factor NAME. Lists for :THINKING need no quote."
   (if (and (eq :thinking name) (thinking-mode-p form)) `',form form))
 
 (defun values-form (part)
-  "Return a form that lists the values in PART of :vary; for a design, the bounds of its ranges."
+  "Return a form for a list of the values in PART of :vary, or of the bounds of a design's ranges."
   (cond ((design-part-p part)
          `(list ,@(loop for (nil low high) in (design-ranges part) collect `(list ,low ,high))))
         ((eq :in (second part)) (third part))
@@ -44,7 +44,7 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
     (if given (value-form :thinking (first rest)) :free)))
 
 (defun outcome-clauses (clauses)
-  "Return the CLAUSES, apart from factors, that affect the outcome of a trial."
+  "Return those CLAUSES that affect the outcome of a trial, except the factors."
   (loop for key in '(:robots :parameters :clean :thinking :seed :limit :run :until :success
                      :measure :each-tick)
         for clause = (find key clauses :key #'first)
@@ -76,7 +76,7 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
 
 (addition defexperiment)
 (define-user-macro defexperiment (&whole form name &body clauses &environment environment)
-  "Define the experiment NAME, which RUN-EXPERIMENT runs. An optional string first gives the
+  "Define the experiment NAME, which RUN-EXPERIMENT runs. The first clause may be a string, the
 question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. The CLAUSES are:
   (:robots name...)          the robots in the world of each trial, all of one map
   (:run form...)             what a trial does, in a fresh headless simulation
@@ -87,20 +87,20 @@ question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. Th
                              from a list. Values are numbers, symbols, strings, or lists of these.
                              (:sobol n (what low high)...) samples N points from ranges instead of
                              all combinations; so do :latin-hypercube and :random. N may be followed
-                             by :seed and an integer, a range by :integer or :log
+                             by :seed and an integer; a range may end with :integer or :log
   (:conditions (name (what form)...)...)  named conditions, alone or combined with :vary
   (:trials n)                trials of each condition; 100 by default; RUN-EXPERIMENT overrides it
   (:seed n)                  0 by default; trial T has the seed N + T under all conditions
   (:limit n)                 the most ticks of a trial, 100000 by default
   (:time-limit n)            the most seconds of real time of a trial, none by default;
                              RUN-EXPERIMENT overrides it
-  (:parameters (p form)...)  the values of parameters. All others have the manual's values; your
-                             own settings do not count
-  (:clean)                   no noise, except where :parameters and :vary set it. (With noise in
-                             perception set NO-SENSOR-ERROR* to NIL.)
+  (:parameters (p form)...)  the values of parameters. Other parameters have the manual's
+                             values; your own settings do not count
+  (:clean)                   no noise, except where :parameters and :vary set it. For noise in
+                             perception, also set NO-SENSOR-ERROR* to NIL
   (:thinking mode)           the cost of thinking, see SET-THINKING; :FREE by default
-  (:until form)              after :run, ticks pass until FORM is true; for continuations
-  (:success form)            whether the trial succeeded, evaluated at its end; see TRIAL-VALUES.
+  (:until form)              after :run, ticks pass until FORM is true: for continuations
+  (:success form)            whether the trial succeeded: evaluated at its end, see TRIAL-VALUES.
                              If :run succeeds but FORM is false, the trial fails: only-believed
   (:measure (name form)...)  values at the end of the trial: numbers, T or NIL, symbols, strings,
                              or :NONE for no value
@@ -111,8 +111,8 @@ question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. Th
 Without :success and :until the values of :run decide. If :run returns the values of RUN-PLAN or the
 task of BEGIN-PLAN, the outcome of the plan counts (unfinished if the task has not ended). Otherwise
 a true first value is success, and the second value, a symbol or string, is the reason. If a plan
-started by BEGIN-PLAN waits for something that can never happen, the trial fails: deadlock. The
-documentation of RUN-EXPERIMENT says what is kept."
+started by BEGIN-PLAN waits for something that can never happen, the trial fails with the reason
+deadlock. The documentation of RUN-EXPERIMENT says what is kept."
   (let ((definition (definition-title "defexperiment" name)))
     (multiple-value-bind (clauses documentation)
         (if (stringp (first clauses))
@@ -190,7 +190,7 @@ documentation of RUN-EXPERIMENT says what is kept."
   (check-values-differ definition part (mapcar #'value-text values)))
 
 (defun axis-from-values (definition part values)
-  "Return the axis for PART of :vary. VALUES are the value of its VALUES-FORM."
+  "Return the axis for PART of :vary. VALUES is what the form from VALUES-FORM returns."
   (cond ((design-part-p part)
          (let ((choices (design-choices definition part values)))
            (dolist (choice choices)
@@ -224,8 +224,8 @@ documentation of RUN-EXPERIMENT says what is kept."
                                 &rest options
                                 &key robots parameters clean (thinking :free) factors cases
                                 &allow-other-keys)
-  "Return an experiment named NAME. Errors name DEFINITION. OPTIONS may also be the initial values
-of other slots of an experiment."
+  "Return an experiment named NAME. Errors name DEFINITION. OPTIONS may also give initial values of
+other slots of an experiment."
   (check-robots definition (list* :robots robots) robots)
   (check-value definition (list :thinking thinking) thinking)
   (let* ((axes (loop for (part values) in factors collect

@@ -19,7 +19,7 @@
                      name (nearest-name name (mapcar #'parameter-name (all-parameters)))))))
 
 (defun warn-of-unnamed-measures (key clauses)
-  "Warn if a part (name form) of the clause KEY of CLAUSES looks like a call with a robot."
+  "Warn if a part (name form) of the clause KEY in CLAUSES looks like a call with a robot."
   (loop with robots = (clause-arguments :robots clauses)
         for (name form) in (clause-arguments key clauses)
         when (and (fboundp name) (symbolp form) (member form robots))
@@ -41,8 +41,8 @@
   (and (typep form '(cons (member quote function) (cons symbol null))) (second form)))
 
 (defun run-plan-advice (name)
-  (format nil "(:run (run-plan '~(~A~) ...)), with the plan's arguments: the name ~:*~(~A~) alone ~
-               runs nothing" name))
+  (format nil "(:run (run-plan '~(~A~) ...)), with the plan's arguments: ~:*~(~A~) alone runs ~
+               nothing" name))
 
 (defun check-run-clause (definition clause)
   "Signal MALFORMED-DEFINITION if CLAUSE, :run, is only the name of a plan."
@@ -55,27 +55,26 @@
 ;;; Tests.
 
 (defun warn-of-plan-as-test (form)
-  "Warn if FORM, the last form of :run, tests the first value of a plan, which is true on failure."
+  "Warn if FORM, the last form of :run, tests the first value of a plan: a failure is true, too."
   (when (and (typep form '(cons symbol (cons (cons symbol) (cons (eql t) (or null (cons null))))))
              (same-name-p 'if (first form))
              (same-name-p 'run-plan (first (second form))))
     (let ((*print-case* :downcase) (*print-pretty* t) (*print-right-margin* 10000))
-      (warn-of-style ":run: a plan that fails has its failure as the value, which is true, so ~
-                      that ~S is T even then. Write only ~S, whose second value says how the ~
-                      plan ended, or a clause (:success form)."
+      (warn-of-style ":run: a failed plan returns its failure, which is true, so ~S is T even ~
+                      then. Write only ~S, whose second value says how the plan ended, or a clause ~
+                      (:success form)."
                         (abridged form) (abridged (second form))))))
 
 (defun number-as-test-advice (form)
   (when (or (realp form)
             (and (consp form) (member (first form) '(length count + - * floor round abs))))
     (let ((*print-case* :downcase) (*print-pretty* nil))
-      (format nil "~S is a number, which counts as true, also if it is 0. Compare it, as in ~
-                   (< 0 ~:*~S)." form))))
+      (format nil "~S is a number: even 0 counts as true. Compare it, as in (< 0 ~:*~S)." form))))
 
 (defun plan-as-test-advice (form)
   (when (and (consp form) (symbolp (first form)) (same-name-p 'run-plan (first form)))
-    (format nil "a plan that fails has its failure as the value, which is true. Let the call of ~
-                 RUN-PLAN be the last form of :run: its second value says how it ended.")))
+    (format nil "a failed plan returns its failure, which is true. Make the call of RUN-PLAN the ~
+                 last form of :run: its second value says how the plan ended.")))
 
 (defun returns-first-value-p (form)
   "True if FORM returns the first value of :run, or of RUN-PLAN."
@@ -98,8 +97,7 @@
     nil))
 
 (defun check-test-clause (definition clause)
-  "Signal MALFORMED-DEFINITION unless CLAUSE has one form. Warn if the form is always true or always
-false."
+  "Signal MALFORMED-DEFINITION unless CLAUSE has one form. Warn if it is always true or false."
   (unless (= 2 (length clause)) (reject-by-usage definition clause))
   (let* ((test (second clause))
          (doubt (or (doubtful-test-text test)

@@ -22,10 +22,8 @@
   (parameters #() simple-vector "the values of all parameters" :writable)
   (arguments '() list "the values of the variables of the experiment's forms, in order" :writable)
   (fingerprint nil (or null string)
-               "the number that identifies the condition's code and configuration, or NIL before it
-is computed" :writable)
-  (variables '() list "lists (symbol value): users' special variables that its trials can reach, and
-their values" :writable)
+               "the number that identifies code and configuration, NIL at first" :writable)
+  (variables '() list "lists (symbol value) of users' variables that trials can reach" :writable)
   (weak-parts (make-hash-table :test 'equal) hash-table "fingerprint parts for objects that these
 variables hold weakly: the keys of a table" :writable))
 
@@ -34,7 +32,7 @@ variables hold weakly: the keys of a table" :writable))
     (format stream "condition ~A" (condition-name condition))))
 
 (defun combinations (axes)
-  "Return all combinations of the settings of AXES, lists; the last axis varies fastest."
+  "Return a list of all combinations of the settings of AXES. The last axis varies fastest."
   (if (null axes)
       (list '())
       (loop with rest = (combinations (rest axes))
@@ -54,8 +52,8 @@ variables hold weakly: the keys of a table" :writable))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 
 (defun parameter-values-with (settings clean)
-  "Return a vector of the values of all parameters: the last value in SETTINGS, lists (name value).
-Other parameters have the value without noise if CLEAN is true, else the manual's value."
+  "Return a vector of the values of all parameters. SETTINGS are lists (name value); the last for a
+name counts. Other parameters have the value without noise if CLEAN is true, else the manual's."
   (cl:map 'simple-vector
           (lambda (parameter)
             (let ((setting (find (parameter-symbol parameter) settings
@@ -133,7 +131,8 @@ PARAMETERS are lists (name value) for all conditions."
                                                       others clean parameters))))
 
 (defun filter-by-name (text things name)
-  "Return the THINGS named TEXT, or else those with TEXT in their names. NAME is a name's reader."
+  "Return THINGS named TEXT, or else THINGS with TEXT in the name. NAME returns the name of a
+thing."
   (or (remove text things :key name :test-not #'string-equal)
       (remove-if-not (lambda (thing) (search text (funcall name thing) :test #'char-equal))
                      things)))
@@ -163,8 +162,7 @@ condition, its number, from 1, its name, or an unambiguous part of its name. Sig
   "Return the seed of the trial numbered TRIAL, the same under all conditions."
   (+ (experiment-seed experiment) trial))
 
-(defparameter *columns-before-factors* '("experiment" "fingerprint" "condition")
-  "The columns of a table before the factors.")
+(defparameter *columns-before-factors* '("experiment" "fingerprint" "condition"))
 (defparameter *columns-before-measures* '("seed" "trial" "outcome" "reason" "ticks")
   "The columns of a table of rows between the factors and the measures.")
 (defparameter *columns-after-measures* '("digest" "error")
@@ -198,7 +196,7 @@ condition, its number, from 1, its name, or an unambiguous part of its name. Sig
     (if (and end (plusp end)) (subseq line 0 end) line)))
 
 (defun question-of (name)
-  "Return the question of the experiment that a table calls NAME; NIL for an unknown experiment."
+  "Return the question of the experiment that a table calls NAME; NIL if it is unknown."
   (let* ((experiment (find-experiment name nil))
          (text (and experiment (experiment-documentation experiment))))
     (and text (string/= "" (one-line text)) (first-sentence text))))

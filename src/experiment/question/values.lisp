@@ -99,7 +99,7 @@ that it is the same in each run."
 
 ;; Forms of a trial may set the printer's variables.
 (defun value-text (value)
-  "Return the text for VALUE in a table, independent of reader and printer variables."
+  "Return the text of VALUE in tables. Reader and printer variables do not affect it."
   (case value
     ((t) "TRUE")
     ((nil) "FALSE")

@@ -6,7 +6,7 @@
 ;;; in a continuation or kicker need not end its trial; so a group may also have succeeded.
 
 (defun failure-groups (sample)
-  "Return groups (trials outcome reason error) of failures and errors of SAMPLE, the largest first."
+  "Group failures and errors of SAMPLE. Return lists (trials outcome reason error), longest first."
   (let ((known (make-hash-table :test 'equal)) (keys '()))
     (loop for trial across (sample-trials sample)
           for outcome across (sample-outcomes sample)
@@ -46,8 +46,7 @@ experiment that was run in this Lisp, or the experiment's name. Signals MISUSE a
            (read-results designator))
           (experiment
            (or (experiment-results experiment)
-               (reject-use "~(~A~) has not been run here. Run it, or give the directory of its ~
-                            results."
+               (reject-use "~(~A~) was not run in this Lisp. Run it, or give its directory."
                            (experiment-name experiment))))
           (t (reject-argument "trial-failures" "results" designator
                               "results, an experiment, or the name of a directory")))))
@@ -99,8 +98,8 @@ MISUSE, UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
 
 (addition print-failures)
 (defun print-failures (results &optional condition (stream *standard-output*))
-  "Write to STREAM what TRIAL-FAILURES returns: for each condition how many trials failed in which
-way, and a line for the prompt that opens one of these trials. Return nothing."
+  "Write to STREAM what TRIAL-FAILURES returns: for each condition, how many trials failed in which
+way, and a line to type at the prompt that opens one of these trials. Return nothing."
   (dolist (sample (samples-matching (designated-results results) condition) (values))
     (print-failure-groups sample stream)))
 
@@ -126,7 +125,7 @@ way, and a line for the prompt that opens one of these trials. Return nothing."
                   (sample-condition sample))))
 
 (defun block-of-trial (index sample place)
-  "Return the block in INDEX of the trial at index PLACE of SAMPLE; NIL if the trial has no lines.
+  "Return the block of INDEX for the trial at index PLACE of SAMPLE; NIL if the trial has no lines.
 Signals MISUSE if lines are missing."
   (when (aref (sample-digests sample) place)
     (or (complete-block (trial-blocks index (row-key sample) (aref (sample-seeds sample) place)

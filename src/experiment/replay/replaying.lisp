@@ -26,7 +26,8 @@
 
 (defun call-outside-trial (function)
   "Call FUNCTION, which inspects a trial that runs again. The *INSPECTION-VARIABLES* have their
-values from outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION do not count."
+values from outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION are not the
+trial's."
   (let ((outside *inspection-context*))
     (progv *inspection-variables* (outside-values outside)
       (let ((*inspecting-p* t))
@@ -88,7 +89,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
 ;;; Pace and steps: waiting at the gate, between two ticks.
 
 (defun await-time (due simulation)
-  "Wait until the time DUE, in seconds; serve other threads' requests to SIMULATION meanwhile."
+  "Wait until the real time DUE, in seconds. Meanwhile serve other threads' requests to SIMULATION."
   (loop with never = (make-semaphore "never")
         for left = (- due (seconds-now))
         do (answer-questions (timeline-custody (simulation-timeline simulation)))
@@ -96,7 +97,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
         do (serve-and-wait-once never (min left 0.02))))
 
 (defun paced-gate (rate)
-  "Return a gate, a function called before each tick, that lets RATE ticks a second pass."
+  "Return a gate: a function that is called before each tick and lets RATE ticks a second pass."
   (let ((due nil))
     (lambda (simulation)
       (unless due
@@ -118,7 +119,8 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
                                            (simulation-tick simulation)))))))
 
 (defun replay-gate (until rate step stop)
-  "Return a gate for the arguments UNTIL, RATE and STEP of REPLAY-TRIAL. STOP leaves the trial."
+  "Return a gate for the arguments UNTIL, RATE and STEP of REPLAY-TRIAL. The function STOP leaves
+the trial."
   (let ((pace (and rate (paced-gate rate))))
     (lambda (simulation)
       (let ((left (if until (- until (simulation-tick simulation)) most-positive-fixnum)))
@@ -130,7 +132,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
 ;;; Comparison with the table.
 
 (defun row-of-trial (experiment condition trial directory)
-  "Return the texts of the row of TRIAL of CONDITION of EXPERIMENT in DIRECTORY, or signal MISUSE."
+  "Return the texts of the row that DIRECTORY has for TRIAL of CONDITION. Signals MISUSE if none."
   (let ((file (rows-file (existing-table-directory directory)))
         (place (1+ (seed-column (columns experiment))))
         (number (value-text trial)))

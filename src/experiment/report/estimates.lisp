@@ -183,7 +183,7 @@ Return KIND."
 (defun failed-p (outcome) (string= "failure" outcome))
 
 (defun interim-look-number (trials)
-  "Return the number of the interim look after TRIALS trials of each condition, or NIL."
+  "If there is an interim look after TRIALS trials of each condition, return its number; else NIL."
   (loop for look from 1
         for count = (count-at-look look)
         while (<= count trials)

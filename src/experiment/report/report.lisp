@@ -5,7 +5,7 @@
 ;;; Reasons and errors.
 
 (defstruct (occurrence (:constructor make-occurrence (text sample trial)) (:copier nil))
-  "A reason or error that COUNT trials have, the first of them TRIAL of SAMPLE. WHERE is an alist
+  "A reason or error that COUNT trials have; TRIAL of SAMPLE is the first of them. WHERE is an alist
 from the names of conditions to counts."
   (text "" :type string :read-only t)
   (sample nil :type sample :read-only t)
@@ -94,10 +94,10 @@ a form that replays an example."
 ;;; Notes on intervals.
 
 (defun left-out-text (estimates)
-  "Return a sentence on the values that ESTIMATES, all of one measure, leave out; NIL if none."
+  "ESTIMATES are of one measure. Return a sentence on the values that they leave out; NIL if none."
   (let ((count (reduce #'+ estimates :key #'estimate-left-out)))
     (and (plusp count)
-         (format nil "~A: ~D value~:P that ~:*~[~;is no number is~:;are no numbers are~] left out."
+         (format nil "~A: left out ~D value~:P that ~:*~[~;is not a number~:;are not numbers~]."
                  (estimate-name (first estimates)) count))))
 
 (defun interval-kinds-text (summaries)
@@ -286,11 +286,11 @@ experiment has none of the conditions of SUMMARIES."
 
 (addition print-results)
 (defun print-results (results &optional (stream *standard-output*))
-  "Write RESULTS to STREAM, in lines of at most 100 characters, and return RESULTS. A table shows
-for each condition how often it succeeded, how often it reached the limit of ticks or had an error
-(if it did), the ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below the table are
-the reasons of failures and the errors, with an example of each, and the kinds of intervals.
-Conditions that the experiment no longer has, if known, are in a separate table."
+  "Write RESULTS to STREAM, in lines of at most 100 characters, and return RESULTS. For each
+condition, a table shows how often trials succeeded, reached the limit of ticks or had an error, the
+ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below the table are the reasons of
+failures and the errors, with an example of each, and the kinds of intervals. Conditions that the
+experiment no longer has, if known, are in a separate table."
   (check-argument print-results results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))

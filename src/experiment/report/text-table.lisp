@@ -48,7 +48,7 @@ is true, TEXTS are not wrapped."
       (%make-text-column heading cells anchor width))))
 
 (defun blocks (key columns)
-  "Return lists of columns that fit on the page: all of KEY, and as many of COLUMNS as fit."
+  "Divide COLUMNS into lists that fit on the page, each list after all columns of KEY."
   (flet ((width (columns) (reduce #'+ columns :key (lambda (column)
                                                      (+ 2 (text-column-width column))))))
     (loop with blocks = '() and block = '()
@@ -93,7 +93,8 @@ is true, TEXTS are not wrapped."
                 (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
 
 (defun tally-text (tally most)
-  "Return TALLY, an alist from texts to counts, as a line: the first MOST texts, then others."
+  "Return TALLY, an alist from texts to counts, as a line: the first MOST texts, then the count of
+others."
   (flet ((counted (text count)
            (no-break-text (format nil "~A (~D)" (cut text 60) count))))
     (let ((rest (nthcdr most tally)))

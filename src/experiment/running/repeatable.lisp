@@ -49,7 +49,7 @@ OTHERS, and its text in TEXTS."
                   (start-again-advice)))))
 
 (defparameter *seconds-for-checks* 10
-  "The seconds for which trials with rows are run again, as a check, before an experiment resumes.")
+  "How many seconds an experiment that resumes spends on checking rows by running trials again.")
 
 (defun check-rows-repeatable (experiment rows seconds)
   "Signal MISUSE if a trial of ROWS, rows of different conditions of EXPERIMENT, now gives another
@@ -66,8 +66,8 @@ row. Check at least one trial, and more trials until SECONDS have passed."
   (subseq name (1+ (or (position #\: name) -1))))
 
 (defun sharing-advice (changed condition)
-  "Return advice if CHANGED, the fingerprint parts that trials of CONDITION have changed, contains a
-variable or a function; else NIL."
+  "CHANGED are the fingerprint parts that trials of CONDITION have changed. Return advice if they
+contain a variable or a function; else NIL."
   (flet ((name (kind) (second (find kind changed :key #'first))))
     (let ((variable (name :variable)) (function (name :function)))
       (cond (variable

@@ -8,7 +8,8 @@
 ;;; Rows that exist already.
 
 (defun rows-to-check (conditions &rest tables)
-  "Return the values of CONDITIONS in hash TABLES: each value once, those of the first table first."
+  "Return the values that hash TABLES have for CONDITIONS, each once, those of the first table
+first."
   (remove nil (remove-duplicates
                (loop for table in tables
                      append (loop for condition in conditions collect (gethash condition table)))
@@ -100,7 +101,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
 ;;; RUN-EXPERIMENT.
 
 (defparameter *most-trials* 1000000
-  "The default for the most trials of a condition if :until is given.")
+  "The default for :trials, the most trials of a condition, if :until is given.")
 
 (defun sort-tables (experiment directory)
   (let ((file (series-file directory)))
@@ -148,7 +149,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
   (check-argument run-experiment shard (shard-p shard)
                   "(index . count), with an index from 0 to below count")
   (when (and until shard)
-    (reject-use "A shard cannot know when intervals are narrow enough: give :until or :shard.")))
+    (reject-use "A shard does not see all trials: give :until or :shard, not both.")))
 
 (defun report-errors (results stream)
   "If trials of RESULTS had errors, print to STREAM how many, and the first error."
@@ -180,18 +181,18 @@ COMPARE-CONDITIONS.
 DIRECTORY, created if necessary, keeps the table: rows.csv, a row for each trial; machine.csv, what
 differs from run to run; experiment.txt, how to repeat the experiment; series.csv, what :each-tick
 records, a line for each tick of each trial, see TRIAL-SERIES. Trials that have a row in DIRECTORY
-are not run again. So call RUN-EXPERIMENT again to continue a stopped run or to add trials. Rows of
-other code or another configuration signal MISUSE. Without DIRECTORY nothing is kept except the
-returned results.
+are not run again. So call RUN-EXPERIMENT again to continue a stopped run or to add trials. If
+DIRECTORY has rows of other code or another configuration, MISUSE is signalled. Without DIRECTORY
+nothing is kept except the returned results.
 
-UNTIL, a width, adds trials until the interval of each condition's success is at most UNTIL wide.
-The intervals are computed after 50, 100, 200 ... trials, at most TRIALS or a million. SHARD
-(index . count) runs only the trials whose numbers divided by COUNT leave the remainder INDEX;
-MERGE-RESULTS merges shards. Unless STREAM is NIL, STREAM shows the progress, the name of a trial
-that takes much longer than others, and at the end the number of trials with errors.
+With UNTIL, a width, trials are added until the interval of each condition's success is at most
+UNTIL wide. The intervals are computed after 50, 100, 200 ... trials, at most TRIALS or a million.
+SHARD (index . count) runs only the trials whose numbers divided by COUNT leave the remainder INDEX;
+MERGE-RESULTS merges shards. Unless STREAM is NIL, the progress is written to STREAM, with the name
+of a trial that takes much longer than others, and at the end the number of trials with errors.
 
 TIME-LIMIT is the most seconds of real time that a trial may take, by default what the experiment
-says; NIL for no limit. A trial that takes longer is ended. Such a trial has the outcome timeout,
+says; NIL means no limit. A trial that takes longer is ended. Such a trial has the outcome timeout,
 which is no success, and is not run again. Machines differ, so allow far more time than trials need.
 A trial that ends its own thread is an error of that trial.
 

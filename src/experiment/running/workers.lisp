@@ -197,7 +197,7 @@ Return the trial's result, even if the trial ends the thread, unless STOPPING-P 
 
 (defstruct (queue (:constructor make-queue (conditions last presence shard time-limit))
                   (:copier nil))
-  "The trials from 1 to LAST of CONDITIONS that are in SHARD and that PRESENCE lacks."
+  "Those of the trials 1 to LAST of CONDITIONS that are in SHARD and not in PRESENCE."
   (conditions '() :type list :read-only t)
   (last 0 :type integer :read-only t)
   (presence nil :type hash-table :read-only t)
@@ -214,7 +214,7 @@ Return the trial's result, even if the trial ends the thread, unless STOPPING-P 
   (= (car shard) (mod trial (cdr shard))))
 
 (defun step-queue (queue)
-  "Return the next trial of QUEUE, with or without a row, as a condition and a number; or NIL."
+  "Return condition and number of the next trial of QUEUE, even if it has a row; NIL at the end."
   (when (null (queue-left queue))
     (setf (queue-trial queue)
           (loop for trial from (1+ (queue-trial queue)) to (queue-last queue)
@@ -225,7 +225,7 @@ Return the trial's result, even if the trial ends the thread, unless STOPPING-P 
   (values (pop (queue-left queue)) (queue-trial queue)))
 
 (defun next-trial (queue)
-  "Return the next trial of QUEUE without a row, as a condition and a number; or NIL."
+  "Return condition and number of the next trial of QUEUE that has no row; NIL at the end."
   (with-lock ((queue-lock queue))
     (unless (queue-closed-p queue)
       (loop (multiple-value-bind (condition trial) (step-queue queue)

@@ -29,7 +29,7 @@ fails, as outside of a work tree."
     (and (eql 0 status) (string-trim '(#\Space #\Newline) text))))
 
 (defun commit-text (directory)
-  "Return the commit of DIRECTORY, and whether its files have changed since, as a text; or NIL."
+  "Return a text with the commit of DIRECTORY and whether its files have changed since, or NIL."
   (let ((commit (git-output directory "rev-parse" "HEAD")))
     (and commit
          (format nil "commit ~A~@[~A~]" commit
@@ -128,7 +128,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
     (and text (uiop:split-string text :separator '(#\Newline)))))
 
 (defun recorded-until (directory)
-  "Return the width of intervals given by --until in experiment.txt in DIRECTORY, or NIL."
+  "Return the width of intervals that --until gives in experiment.txt in DIRECTORY, or NIL."
   (let* ((command (find-if (lambda (line) (starts-with-subseq "  ./cli/ars-magna experiment" line))
                            (description-lines directory)))
          (place (and command (search "--until " command)))
@@ -208,7 +208,7 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
 
 (defun reject-foreign-rows (experiment condition parts directory)
   "Signal MISUSE: DIRECTORY has rows of CONDITION of EXPERIMENT with another fingerprint. PARTS are
-those of the fingerprints of all conditions."
+the fingerprint parts of all conditions."
   (let ((its (nth (position condition (experiment-conditions experiment)) parts)))
     (reject-use "~A has rows of the condition ~A from other code or another configuration~@[; ~
                  changed since: ~{~A~^, ~}~]. Give another directory, or delete these rows."

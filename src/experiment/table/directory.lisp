@@ -64,7 +64,7 @@
 ;;; Writing.
 
 (defun remove-incomplete-line (file columns)
-  "Remove an incomplete last line, left by a killed process, from FILE, a table with COLUMNS. Return
+  "FILE is a table with COLUMNS. Remove a last line that a killed process left incomplete. Return
 true if FILE has lines left. If FILE is no such table, change nothing and signal DAMAGED-TABLE."
   (when (existing-path file)
     (check-file-header file columns)
@@ -87,8 +87,7 @@ true if FILE has lines left. If FILE is no such table, change nothing and signal
     stream))
 
 (defparameter *machine-columns*
-  '("condition" "seed" "trial" "milliseconds" "worker" "process" "host")
-  "The columns of machine.csv.")
+  '("condition" "seed" "trial" "milliseconds" "worker" "process" "host"))
 
 (defun open-table-of-machines (directory)
   "Return a stream that appends to machine.csv in DIRECTORY. Signals DAMAGED-TABLE."
@@ -174,8 +173,8 @@ in the worker numbered WORKER."
         :key #'condition-name :test #'string=))
 
 (defun check-row (experiment condition texts file number)
-  "Signal DAMAGED-TABLE unless TEXTS, line NUMBER of FILE, can be a row of CONDITION of EXPERIMENT,
-or of a former condition if CONDITION is NIL."
+  "TEXTS are line NUMBER of FILE. Signal DAMAGED-TABLE unless they can be a row of CONDITION of
+EXPERIMENT, or of a former condition if CONDITION is NIL."
   (let* ((seed (seed-column (columns experiment)))
          (trial (parse-integer (nth (1+ seed) texts))))
     (unless (string= (first texts) (string-downcase (experiment-name experiment)))
@@ -191,10 +190,10 @@ or of a former condition if CONDITION is NIL."
                   (trial-seed experiment trial) (nth seed texts)))))
 
 (defun present-rows (experiment directory foreign &optional (sample (constantly nil)))
-  "Return two values: a table of the rows of EXPERIMENT present in DIRECTORY, without those whose
-series are incomplete, and the index of the series. Call FOREIGN with the condition and the texts of
-each row with another fingerprint, and SAMPLE with the condition and the texts of each present row.
-Remove an incomplete last line. Signals DAMAGED-TABLE."
+  "Return two values: a table of the rows of EXPERIMENT in DIRECTORY whose series are complete, and
+the index of the series. Call FOREIGN for each row with another fingerprint, and SAMPLE for each row
+in the table, with the condition and the texts of the row. Remove an incomplete last line. Signals
+DAMAGED-TABLE."
   (let ((presence (make-hash-table :test 'eq)) (file (rows-file directory))
         (series (index-existing-series experiment directory))
         (place (1+ (seed-column (columns experiment)))))

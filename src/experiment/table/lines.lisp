@@ -7,8 +7,8 @@
 ;;; leaves it, does not count.
 
 (defun map-lines (function path)
-  "Call FUNCTION with each complete line of the file PATH, as octets, its position, and its number
-from 1. Return the position after the last complete line."
+  "Call FUNCTION with each complete line, as octets, of the file PATH, and with the line's position
+and number, from 1. Return the position after the last complete line."
   (with-open-file (in path :external-format :latin-1)
     (loop with start = 0
           for number from 1
@@ -32,15 +32,15 @@ from 1. Return the position after the last complete line."
       columns)))
 
 (defun check-file-header (file columns)
-  "Signal DAMAGED-TABLE unless FILE is empty, or its first line is COLUMNS, perhaps cut off."
+  "Signal DAMAGED-TABLE unless FILE is empty or begins with COLUMNS. This line may be cut off."
   (multiple-value-bind (line cut-off-p) (first-line file)
     (let* ((header (string-right-trim '(#\Newline) (csv-line columns)))
            (text (and line (line-text line))))
       (when text
         (check-header-line line file)
         (unless (if cut-off-p (starts-with-subseq text header) (string= text header))
-          (reject-table file 1 "its columns are ~A, and those of the table to be written are ~A. ~
-                                Give another directory."
+          (reject-table file 1 "its columns are ~A, not ~A as in the new table. Give another ~
+                                directory."
                         (cut text 200) header))))))
 
 (defun map-rows (function file)
@@ -54,7 +54,7 @@ from 1. Return the position after the last complete line."
                file)))
 
 (defmacro do-rows ((texts file &optional (start (gensym)) (number (gensym))) &body body)
-  "Run BODY with the TEXTS of each row of the table FILE, in line NUMBER, which begins at START."
+  "Run BODY for each row of the table FILE, with its TEXTS, line NUMBER and position START."
   `(map-rows (lambda (,texts ,start ,number)
                (declare (ignorable ,start ,number))
                ,@body)
@@ -79,7 +79,7 @@ RANK is the position of this group among all groups."
   (number 0 :type fixnum :read-only t))
 
 (defun index-rows (files)
-  "Return an unsorted vector of the rows in FILES, tables with equal columns, and a list of groups."
+  "FILES are tables with equal columns. Return an unsorted vector of their rows, and their groups."
   (let ((groups (make-hash-table :test 'equal))
         (rows (make-array 1000 :adjustable t :fill-pointer 0))
         (columns (columns-of-file (first files))))
@@ -119,8 +119,8 @@ RANK is the position of this group among all groups."
 ;;; Whether rows belong together.
 
 (defun check-groups (groups)
-  "Signal MISUSE unless GROUPS are of one experiment, and each condition has one fingerprint and one
-value of each factor."
+  "Signal MISUSE unless GROUPS have one experiment, and each condition one fingerprint and one level
+of each factor."
   (let ((conditions (make-hash-table :test 'equal)) (fingerprints (make-hash-table :test 'equal))
         (experiment (and groups (first (group-key (first groups))))))
     (dolist (group groups)
@@ -132,8 +132,7 @@ value of each factor."
           (when other (reject-inconsistent-groups condition fingerprint other texts)))
         (let ((other (shiftf (gethash fingerprint fingerprints) condition)))
           (when other
-            (reject-use "The conditions ~A and ~A have the same fingerprint, ~A: one of the rows ~
-                         has been changed."
+            (reject-use "The conditions ~A and ~A have the same fingerprint, ~A: a row was edited."
                         other condition fingerprint)))))))
 
 (defun reject-inconsistent-groups (condition fingerprint other texts)

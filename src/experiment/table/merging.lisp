@@ -17,7 +17,6 @@
     (when files (write-sorted-series files rows (series-file target)))))
 
 (defun concatenate-machine-tables (directories target)
-  "Write the concatenation of the files machine.csv in DIRECTORIES to machine.csv in TARGET."
   (let ((files (remove-if-not #'existing-path (mapcar #'machine-file directories))))
     (when files
       (call-replacing-table
@@ -32,10 +31,11 @@
 
 (addition merge-results)
 (defun merge-results (directories &key (to (first directories)))
-  "Merge the tables of one experiment in DIRECTORIES into a table in the directory TO, sorted, with
-each trial once. Return the results. Signals DAMAGED-TABLE if two rows or series of the same trial
-differ, or if the series of a trial is missing, and MISUSE if fingerprints differ; after an error,
-TO is unchanged. If no directory has series of a condition, TO has no series of that condition."
+  "DIRECTORIES have tables of one experiment. Merge these into a sorted table in the directory TO,
+with each trial once. Return the results. Signals DAMAGED-TABLE if two rows or series of the same
+trial differ, or if the series of a trial is missing, and MISUSE if fingerprints differ; after an
+error, TO is unchanged. If no directory has series of a condition, TO has no series of that
+condition."
   (check-argument merge-results directories
                   (and (consp directories) (proper-list-p directories)
                        (every (lambda (name) (typep name '(or string pathname))) directories))
@@ -117,8 +117,8 @@ series is complete. Tables with other columns are skipped."
                          (second texts) name (series-complete-p series texts))))))))))
 
 (defun missing-shards (experiment trials count directory)
-  "Return the sorted indices, from 0, of the shards that lack rows, if COUNT shards run the first
-TRIALS trials of each condition of EXPERIMENT. Rows in DIRECTORY and in the shards below it count."
+  "COUNT shards run the first TRIALS trials of each condition of EXPERIMENT. Return the sorted
+indices, from 0, of shards that lack rows. Rows in DIRECTORY and in the shards below it count."
   (prepare-experiment experiment)
   (let ((presence (make-hash-table :test 'eq)) (missing (make-array count :element-type 'bit)))
     (map-existing-rows (lambda (condition trial fingerprint directory complete-p)
@@ -136,7 +136,7 @@ TRIALS trials of each condition of EXPERIMENT. Rows in DIRECTORY and in the shar
 
 (defun check-same-code (experiment directory)
   "Signal MISUSE if rows in DIRECTORY or the shards below it have other fingerprints than EXPERIMENT
-now, and DAMAGED-TABLE if they have other columns."
+has now, and DAMAGED-TABLE if they have other columns."
   (let ((parts (prepare-experiment experiment)))
     (dolist (name (directories-with-rows directory))
       (check-file-header (rows-file (directory-path name)) (columns experiment)))

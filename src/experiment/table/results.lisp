@@ -60,17 +60,17 @@
 
 (addition results-factors results-measures)
 (defun results-factors (results)
-  "Return the names of the factors of RESULTS, a list of strings, in the order of SAMPLE-TEXTS."
+  "Return a list of strings, the names of the factors of RESULTS, in the order of SAMPLE-TEXTS."
   (columns-between (results-columns results) "condition" "seed"))
 
 (defun results-measures (results)
-  "Return the names of the measures of RESULTS, a list of strings."
+  "Return a list of strings, the names of the measures of RESULTS."
   (measure-columns-of (results-columns results)))
 
 (addition sample-measure)
 (defun sample-measure (results sample measure)
-  "Return a vector of the values of MEASURE, a string or symbol, in the trials of SAMPLE, one of the
-samples of RESULTS: numbers, T, NIL, strings, and :NONE for no value. MEASURE may be ticks, too.
+  "Return a vector of the values of MEASURE, a string or symbol, in the trials of SAMPLE, a sample
+of RESULTS. Values are numbers, T, NIL, strings, and :NONE for no value. MEASURE may be ticks, too.
 Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   (check-argument sample-measure measure (typep measure '(or string symbol))
                   "the name of a measure, a string or symbol")
@@ -83,7 +83,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 ;;; Reading.
 
 (defun value-from-text (text shared)
-  "Return the value of TEXT, a cell of a table. Equal strings are shared by the hash table SHARED."
+  "Return the value of TEXT, a cell of a table. The hash table SHARED makes equal strings EQ."
   (cond ((string= text "") :none)
         ((string= text "TRUE") t)
         ((string= text "FALSE") nil)
@@ -174,7 +174,7 @@ Signals UNKNOWN-NAME and WRONG-ARGUMENT."
 
 (addition read-results)
 (defun read-results (directory)
-  "Return the results in DIRECTORY, as kept by RUN-EXPERIMENT or MERGE-RESULTS. Signals MISUSE if
+  "Return the results that RUN-EXPERIMENT or MERGE-RESULTS has kept in DIRECTORY. Signals MISUSE if
 DIRECTORY has no results, and DAMAGED-TABLE."
   (check-argument read-results directory (typep directory '(or string pathname))
                   "the name of a directory")

@@ -8,7 +8,7 @@
   (format nil "~@[~16,'0X~]" (result-digest result)))
 
 (defun trial-texts (experiment result)
-  "Return the texts at the start of each line of RESULT of EXPERIMENT, up to the trial's number."
+  "Return the texts, up to the trial's number, with which each line of EXPERIMENT's RESULT begins."
   (let ((condition (result-condition result)))
     (append (list (string-downcase (experiment-name experiment))
                   (condition-fingerprint condition)
@@ -30,7 +30,7 @@
 ;;; Lines of series.
 
 (defun series-text (experiment result)
-  "Return the lines of RESULT, of EXPERIMENT, for the table of series; \"\" if it has none."
+  "Return the lines for RESULT of EXPERIMENT in the table of series, or \"\" if there are none."
   (let* ((line (csv-line (trial-texts experiment result)))
          (beginning (substitute #\, #\Newline line :start (1- (length line)))))
     (with-output-to-string (out)
@@ -77,9 +77,9 @@ with the text TROUBLE and the reason."
 ;;; The header.
 
 (defparameter *rows-layout* (list *columns-before-measures* *columns-after-measures*)
-  "Two lists of columns of a table of rows: from the seed to the measures, and after the measures.")
+  "The columns of a table of rows from the seed to the measures and after the measures, two lists.")
 (defparameter *series-layout* (list *columns-before-values* '())
-  "Two lists of columns of a table of series: from the seed to the values, and after the values.")
+  "The columns of a table of series from the seed to the values and after the values, two lists.")
 
 (defun table-columns-p (columns layout)
   "True if COLUMNS can be those of an experiment's table with LAYOUT."
@@ -97,9 +97,9 @@ with the text TROUBLE and the reason."
   (when (or (find #\Return line) (eql 0 (search (format nil "~C~C~C" (code-char #xEF)
                                                         (code-char #xBB) (code-char #xBF))
                                                 line)))
-    (reject-table file 1 "an editor or spreadsheet has saved this file with other line ends or a ~
-                          byte order mark. Use the original table; or save it as plain UTF-8 with ~
-                          line feeds only.")))
+    (reject-table file 1 "an editor or spreadsheet has added carriage returns or a byte order ~
+                          mark. Use the original table, or save it as plain UTF-8 with line feeds ~
+                          only.")))
 
 (defun seed-column (columns)
   (position "seed" columns :test #'string=))
@@ -107,7 +107,7 @@ with the text TROUBLE and the reason."
 ;;; Rows.
 
 (defun timed-out-p (texts columns)
-  "True if the row TEXTS, of a table with COLUMNS, is a timeout, which may not be repeatable."
+  "True if TEXTS, a row of a table with COLUMNS, is a timeout, which need not be repeatable."
   (string= "timeout" (nth (position "outcome" columns :test #'string=) texts)))
 
 (defun hexadecimal-p (text)
@@ -122,7 +122,7 @@ with the text TROUBLE and the reason."
        (ignore-errors (parse-integer text))))
 
 (defun check-cells (cells columns file number)
-  "Signal DAMAGED-TABLE unless CELLS, the cells from the seed on in line NUMBER of FILE, are valid."
+  "Signal DAMAGED-TABLE if one of CELLS, line NUMBER of FILE from the seed on, is not valid."
   (flet ((check (test column)
            (unless test
              (reject-row file number "~A cannot be the ~A of a trial."

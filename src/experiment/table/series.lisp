@@ -29,7 +29,7 @@ start and end, and the number of the first line."
       (setf (gethash key (series-index-groups index)) (make-hash-table))))
 
 (defun trial-blocks (index key seed trial)
-  "Return the blocks in INDEX of TRIAL with SEED whose rows have the texts KEY before the seed."
+  "Return the blocks that INDEX has for TRIAL with SEED and the texts KEY before the seed."
   (let ((group (gethash key (series-index-groups index))))
     (and group
          (remove seed (gethash trial group) :key #'block-seed :test-not #'=))))
@@ -42,7 +42,7 @@ start and end, and the number of the first line."
 ;;; Lines.
 
 (defun map-commas (function line start)
-  "Call FUNCTION with the position of each comma in LINE from START on that is not in quotes."
+  "Call FUNCTION with the position of each comma outside of quotes in LINE, from START on."
   (declare #.*hot* (type (simple-array character (*)) line) (type fixnum start)
            (type function function))
   (loop with quoted-p = nil
@@ -89,7 +89,7 @@ start and end, and the number of the first line."
          (eql (+ (block-first block) (block-count block)) (tick-in-line line (length beginning))))))
 
 (defun check-series-cells (texts seed file number)
-  "Signal DAMAGED-TABLE unless TEXTS, from SEED on, of line NUMBER of FILE, are valid."
+  "TEXTS are line NUMBER of FILE. Signal DAMAGED-TABLE unless those from SEED on are valid."
   (loop for text in (nthcdr seed texts)
         for column in *columns-before-values*
         for least in (list most-negative-fixnum 1 0)
@@ -140,7 +140,8 @@ start and end, and the number of the first line."
 
 (defun expected-line-count (texts seed)
   "Return the number of lines that the trial with the row TEXTS must have. SEED is the seed's
-column. The number is 0 if the row has no digest, as after a timeout or the end of the thread."
+column. The number is 0 if the row has no digest, as after a timeout, or if the trial ended its
+thread."
   (if (string= "" (first (last texts 2)))
       0
       (1+ (parse-integer (nth (+ 4 seed) texts)))))
@@ -160,7 +161,7 @@ column. The number is 0 if the row has no digest, as after a timeout or the end 
                      (series-columns experiment))))
 
 (defun series-complete-p (index texts)
-  "True if INDEX has all lines of the trial with the row TEXTS, or is NIL (without series)."
+  "True if INDEX has all lines of the trial with the row TEXTS, or if INDEX is NIL: no series."
   (or (null index)
       (zerop (expected-line-count texts (seed-column (series-index-columns index))))
       (block-of-row index texts)))

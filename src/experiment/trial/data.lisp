@@ -124,7 +124,8 @@ that has no parts itself. PATH maps the compounds around the current part to the
 ;;; Digests.
 
 (defun map-data-atoms (value atom)
-  "Call ATOM with each part of VALUE that has no parts. Return VALUE's digest; NIL if too large."
+  "Call ATOM with each part of VALUE that has no parts. Return VALUE's digest, or NIL if VALUE is
+too large."
   (let ((walk (make-walk (make-digest) atom)))
     (catch 'too-large
       (call-with-trial-syntax (lambda () (walk-value value 0 walk)) (find-package :keyword))

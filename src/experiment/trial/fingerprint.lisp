@@ -29,8 +29,7 @@
 
 (defparameter *simulator-version*
   (macrolet ((version () (asdf:component-version (asdf:find-system "ars-magna"))))
-    (version))
-  "The version of the simulator, from the system definition.")
+    (version)))
 
 ;;;; Which users' code a function can reach
 
@@ -89,7 +88,7 @@ FILE when it was loaded, or NIL."
 
 (defun note-function (function name reach)
   "Note FUNCTION, the definition of NAME, in REACH if its file does not determine it. The file does
-not determine closures, nor functions that something else has set, such as a trial."
+not determine closures, or functions that were set otherwise, for example by a trial."
   (let ((own-name (nth-value 2 (function-lambda-expression function)))
         (values (closed-over-values function)))
     (unless (or (typep function 'generic-function)
@@ -213,8 +212,7 @@ was loaded. WRITTEN is the date at loading, or NIL."
           ((and now (or (null written) (= now written)))
            (setf (gethash file *file-digests*) (file-digest (native-path file) "defexperiment")))
           ((gethash file *file-digests*))
-          (now (reject-use "~A has been changed since it was loaded. Load the file again, so that ~
-                            its present code runs."
+          (now (reject-use "~A has changed since it was loaded. Load the file again."
                            file))
           (t 0))))
 

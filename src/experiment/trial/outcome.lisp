@@ -59,7 +59,8 @@
                   (procedure-name plan) (run-plan-advice (procedure-name plan))))))
 
 (defun error-in-plan (values)
-  "Return the text of the Lisp error of a failed plan, if VALUES are those of RUN-PLAN; else \"\"."
+  "If VALUES are of RUN-PLAN, and its plan failed by a Lisp error, return the error's text; else
+\"\"."
   (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
       (plain-text (failure-text (lisp-failure-condition (first values))))
       ""))

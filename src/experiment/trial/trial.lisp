@@ -98,8 +98,8 @@ the failure, return the values that RUN-PLAN would have returned, and set the er
       (run-forms experiment condition))))
 
 (defun final-trial-outcome (experiment condition outcome reason)
-  "Return the final outcome and reason of a trial of CONDITION; OUTCOME and REASON are those that
-:run gives. If only :run reports success, the trial fails with the reason only-believed."
+  "Return the final outcome and reason of a trial of CONDITION. OUTCOME and REASON are those of
+:run. If only :run reports success, the trial fails with the reason only-believed."
   (let ((success (experiment-success experiment)))
     (cond ((null success) (values outcome reason))
           ((checked-form-value :success success condition) (values "success" ""))
@@ -118,8 +118,8 @@ the failure, return the values that RUN-PLAN would have returned, and set the er
         (result-error result) (plain-text text)))
 
 (defun outcome-of-run (experiment values)
-  "Return outcome and reason of a trial of EXPERIMENT from VALUES, the values of :run. If these are
-not from RUN-PLAN, and a plan can never continue, the trial fails with the reason deadlock."
+  "Return outcome and reason of a trial of EXPERIMENT from VALUES, the values of :run. If VALUES are
+not from RUN-PLAN and a plan can never continue, the trial fails with the reason deadlock."
   (multiple-value-bind (outcome reason) (apply #'outcome-of-values values)
     (if (and (success-p outcome)
              (not (experiment-until experiment))
