@@ -268,7 +268,7 @@
   (flet ((told (run) (warning-about `(experiment:defexperiment taken-for-true
                                        (:robots rover) (:run ,run)))))
     (is-true (has-words-p (told '(if (driver:run-plan 'turn-once) t nil))
-                          "a plan that fails has its failure as the value" "Write only"))
+                          "a failed plan returns its failure" "Write only"))
     (is (string= "" (told '(driver:run-plan 'turn-once))))
     (is (string= "" (told '(if (driver:run-plan 'turn-once) :hit :missed))))))
 

@@ -255,9 +255,9 @@
   (ars-magna.experiment::no-difference-text (first (measured-differences count 1000 trials))))
 
 (test compare.says-how-many-seeds-so-many-tests-need
-  (is (mentions-p (doubts-of 60 8) (format nil "over 8 seeds p cannot be below .008, too much for ~
-                                                60 tests: run 12 or more, or compare fewer")))
-  (is (mentions-p (doubts-of 1 5) "over 5 seeds p cannot be below .063: run 6 or more")))
+  (is (mentions-p (doubts-of 60 8) (format nil "with 8 seeds p cannot be below .008, too much for ~
+                                                60 tests: run 12 or more seeds, or compare fewer")))
+  (is (mentions-p (doubts-of 1 5) "with 5 seeds p cannot be below .063: run 6 or more")))
 
 (test compare.explains-a-p-above-the-level-beside-an-interval-without-0
   (is (mentions-p (doubts-of 1 5)

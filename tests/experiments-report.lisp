@@ -202,7 +202,7 @@ And more."
                         `((() ("success" :values (1) :error "kicker failed")
                               ("success" :values ("TRUE")) ("success" :values (3)))))
     (let ((text (report-text results)))
-      (is (search "way: 1 value that is no number is left out." text))
+      (is (search "way: left out 1 value that is not a number." text))
       (is (search "Errors that did not end their trials" text))
       (is (search "1  kicker failed" text)))))
 

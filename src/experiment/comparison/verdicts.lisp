@@ -231,8 +231,7 @@ Tests over all conditions are corrected separately. Each interval is for one dif
 ;;; What was left out.
 
 (defun side-counts-text (contrast first second)
-  "FIRST and SECOND are numbers of trials of CONTRAST's sides. Return them as text, or NIL if both
-are 0."
+  "FIRST and SECOND count trials of CONTRAST's sides. Return them as text, or NIL if both are 0."
   (let ((words (loop for count in (list first second)
                      for name in (list (contrast-first contrast) (contrast-second contrast))
                      when (plusp count) collect (format nil "~D of ~A" count name))))

@@ -43,7 +43,7 @@ which are named after what they show. KIND is :SVG or, if the program rsvg-conve
   :SUCCESS      how often trials succeed, for each condition, with 95 % intervals
   :TICKS        the ticks of trials that succeed: medians, with 95 % intervals
   :MEASURES     measures: rates, or means and all numbers
-  :SURVIVAL     the share of trials not yet done after so many ticks
+  :SURVIVAL     the share of trials that are not done, after each number of ticks
   :DIFFERENCES  in success and ticks, between the values of a factor, seed by seed
 The first factor whose values are numbers is the x axis. The other factors make series; more than
 six series make several pictures. Pictures without data are left out. The title is the experiment's
@@ -219,9 +219,9 @@ CONTRASTS. The title is the experiment's question."
   "Save a picture of COMPARISON in FILE, which is replaced if it exists. The ending of the name
 chooses SVG or, if the program rsvg-convert is installed, PNG. The picture shows the difference in
 MEASURE for each pair of conditions: first minus second (rates in points), with the 95 % interval
-and p corrected for all tests of COMPARISON, as in its verdicts; the heading says how many tests
-these are. Return the file's truename. Signals UNKNOWN-NAME if MEASURE was not compared,
-WRONG-ARGUMENT, and MISUSE if FILE is a PNG file and rsvg-convert is missing."
+and p. As in the verdicts, p is corrected for all tests of COMPARISON; the heading has their number.
+Return the file's truename. Signals UNKNOWN-NAME if MEASURE was not compared, WRONG-ARGUMENT, and
+MISUSE if FILE is a PNG file and rsvg-convert is missing."
   (check-argument save-comparison-picture comparison (comparison-p comparison) "a comparison")
   (check-argument save-comparison-picture measure (typep measure '(or symbol string))
                   "the name of a measure")

@@ -26,8 +26,7 @@
 
 (defun call-outside-trial (function)
   "Call FUNCTION, which inspects a trial that runs again. The *INSPECTION-VARIABLES* have their
-values from outside the trial; values that FUNCTION sets are kept. Errors of FUNCTION are not the
-trial's."
+values from outside the trial; values that FUNCTION sets are kept. Its errors are not the trial's."
   (let ((outside *inspection-context*))
     (progv *inspection-variables* (outside-values outside)
       (let ((*inspecting-p* t))
@@ -119,8 +118,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
                                            (simulation-tick simulation)))))))
 
 (defun replay-gate (until rate step stop)
-  "Return a gate for the arguments UNTIL, RATE and STEP of REPLAY-TRIAL. The function STOP leaves
-the trial."
+  "Return a gate for the arguments UNTIL, RATE and STEP of REPLAY-TRIAL. Calling STOP ends a trial."
   (let ((pace (and rate (paced-gate rate))))
     (lambda (simulation)
       (let ((left (if until (- until (simulation-tick simulation)) most-positive-fixnum)))
@@ -246,9 +244,9 @@ a function of no arguments, is called when the trial has ended or is stopped, wh
 still exists, for example to call SAVE-PICTURE.
 
   :until TICK   stops the trial at TICK, in the middle of what it does
-  :rate R       lets R ticks a second pass, or all at once (:FREE), and opens a display, if any
-  :step T       asks before each tick whether it may pass. If the value is a function, it is called
-                instead, with the simulation; if it returns :STOP the trial stops
+  :rate R       lets R ticks a second pass (:FREE: no waiting), and opens the display, if any
+  :step T       asks before each tick whether it may pass. Or give a function of the simulation: it
+                is called before each tick, and stops the trial by returning :STOP
   :trace T      keeps a trace of plans, for WHY and SAVE-PLAN-TIMELINE
   :journal T    keeps a journal, for REPLAY and SAVE-ANIMATION; the name of a file also saves it
   :directory D  compares the result with its row in D

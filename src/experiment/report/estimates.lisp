@@ -45,9 +45,9 @@
                              (name kind count &key value low high (left-out 0) texts beside)))
   "The summary of a column of the table under one condition."
   (name "" string "what was measured, a string: success, ticks, or the name of a measure" :addition)
-  (kind :nothing keyword ":RATE of values that are always true or false, :MEAN of numbers, :MEDIAN
-of ticks, :TEXTS of others, and :NOTHING of no values under any condition" :addition)
-  (count 0 integer "the number of trials with a value; of ticks, of successes" :addition)
+  (kind :nothing keyword ":RATE for values that are always true or false, :MEAN for numbers, :MEDIAN
+for ticks, :TEXTS for others, :NOTHING if no condition has values" :addition)
+  (count 0 integer "the number of trials with a value; for ticks, of successes" :addition)
   (value nil (or null real)
          "the rate, from 0 to 1, the mean or the median; NIL for texts, or if there are no values"
 :addition)
@@ -55,7 +55,7 @@ of ticks, :TEXTS of others, and :NOTHING of no values under any condition" :addi
        "the low bound of the interval; NIL if there are too few values" :addition)
   (high nil (or null real)
         "the high bound of the interval; NIL if there are too few values" :addition)
-  (left-out 0 integer "how many values are left out because they are no numbers" :addition)
+  (left-out 0 integer "how many values are left out because they are not numbers" :addition)
   (texts '() list "an alist from texts to counts, commonest first" :addition)
   (beside '() list "estimates of the same values by other statistics"))
 

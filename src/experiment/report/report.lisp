@@ -289,8 +289,8 @@ experiment has none of the conditions of SUMMARIES."
   "Write RESULTS to STREAM, in lines of at most 100 characters, and return RESULTS. For each
 condition, a table shows how often trials succeeded, reached the limit of ticks or had an error, the
 ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below the table are the reasons of
-failures and the errors, with an example of each, and the kinds of intervals. Conditions that the
-experiment no longer has, if known, are in a separate table."
+failures and the errors, with an example of each, and the kinds of intervals. Conditions that were
+removed from the experiment are in a separate table, if it is known which."
   (check-argument print-results results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))

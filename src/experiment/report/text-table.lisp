@@ -93,8 +93,7 @@ is true, TEXTS are not wrapped."
                 (max 0 (- (length (integer-text (max 1 (1- trials)))) 2))))
 
 (defun tally-text (tally most)
-  "Return TALLY, an alist from texts to counts, as a line: the first MOST texts, then the count of
-others."
+  "Return TALLY, an alist from texts to counts, as a line: the first MOST texts, then others (N)."
   (flet ((counted (text count)
            (no-break-text (format nil "~A (~D)" (cut text 60) count))))
     (let ((rest (nthcdr most tally)))

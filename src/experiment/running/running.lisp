@@ -8,8 +8,7 @@
 ;;; Rows that exist already.
 
 (defun rows-to-check (conditions &rest tables)
-  "Return the values that hash TABLES have for CONDITIONS, each once, those of the first table
-first."
+  "Return the values that hash TABLES have for CONDITIONS, each once, the first table's first."
   (remove nil (remove-duplicates
                (loop for table in tables
                      append (loop for condition in conditions collect (gethash condition table)))

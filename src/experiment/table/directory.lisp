@@ -192,7 +192,7 @@ EXPERIMENT, or of a former condition if CONDITION is NIL."
 (defun present-rows (experiment directory foreign &optional (sample (constantly nil)))
   "Return two values: a table of the rows of EXPERIMENT in DIRECTORY whose series are complete, and
 the index of the series. Call FOREIGN for each row with another fingerprint, and SAMPLE for each row
-in the table, with the condition and the texts of the row. Remove an incomplete last line. Signals
+in the table, with the row's condition and texts. Remove an incomplete last line. Signals
 DAMAGED-TABLE."
   (let ((presence (make-hash-table :test 'eq)) (file (rows-file directory))
         (series (index-existing-series experiment directory))

@@ -31,11 +31,10 @@
 
 (addition merge-results)
 (defun merge-results (directories &key (to (first directories)))
-  "DIRECTORIES have tables of one experiment. Merge these into a sorted table in the directory TO,
-with each trial once. Return the results. Signals DAMAGED-TABLE if two rows or series of the same
-trial differ, or if the series of a trial is missing, and MISUSE if fingerprints differ; after an
-error, TO is unchanged. If no directory has series of a condition, TO has no series of that
-condition."
+  "Merge tables of one experiment in DIRECTORIES into a sorted table in the directory TO. It has
+each trial once. Return the results. Signals DAMAGED-TABLE if two rows or series of the same trial
+differ, or if the series of a trial is missing, and MISUSE if fingerprints differ; after an error,
+TO is unchanged. If no directory has series of a condition, TO has no series of that condition."
   (check-argument merge-results directories
                   (and (consp directories) (proper-list-p directories)
                        (every (lambda (name) (typep name '(or string pathname))) directories))

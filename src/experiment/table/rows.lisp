@@ -77,9 +77,9 @@ with the text TROUBLE and the reason."
 ;;; The header.
 
 (defparameter *rows-layout* (list *columns-before-measures* *columns-after-measures*)
-  "The columns of a table of rows from the seed to the measures and after the measures, two lists.")
+  "Two lists of the columns in a table of rows: from the seed to the measures, and after these.")
 (defparameter *series-layout* (list *columns-before-values* '())
-  "The columns of a table of series from the seed to the values and after the values, two lists.")
+  "Two lists of the columns in a table of series: from the seed to the values, and after these.")
 
 (defun table-columns-p (columns layout)
   "True if COLUMNS can be those of an experiment's table with LAYOUT."
@@ -97,9 +97,8 @@ with the text TROUBLE and the reason."
   (when (or (find #\Return line) (eql 0 (search (format nil "~C~C~C" (code-char #xEF)
                                                         (code-char #xBB) (code-char #xBF))
                                                 line)))
-    (reject-table file 1 "an editor or spreadsheet has added carriage returns or a byte order ~
-                          mark. Use the original table, or save it as plain UTF-8 with line feeds ~
-                          only.")))
+    (reject-table file 1 "an editor or spreadsheet added carriage returns or a byte order mark. ~
+                          Use the original table, or save it as UTF-8 with line feeds only.")))
 
 (defun seed-column (columns)
   (position "seed" columns :test #'string=))

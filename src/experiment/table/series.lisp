@@ -140,8 +140,7 @@ start and end, and the number of the first line."
 
 (defun expected-line-count (texts seed)
   "Return the number of lines that the trial with the row TEXTS must have. SEED is the seed's
-column. The number is 0 if the row has no digest, as after a timeout, or if the trial ended its
-thread."
+column. The number is 0 if the row has no digest: after a timeout or the end of the trial's thread."
   (if (string= "" (first (last texts 2)))
       0
       (1+ (parse-integer (nth (+ 4 seed) texts)))))

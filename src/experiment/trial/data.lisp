@@ -124,8 +124,7 @@ that has no parts itself. PATH maps the compounds around the current part to the
 ;;; Digests.
 
 (defun map-data-atoms (value atom)
-  "Call ATOM with each part of VALUE that has no parts. Return VALUE's digest, or NIL if VALUE is
-too large."
+  "Return a digest of VALUE, or NIL if VALUE is too large. Call ATOM with each part without parts."
   (let ((walk (make-walk (make-digest) atom)))
     (catch 'too-large
       (call-with-trial-syntax (lambda () (walk-value value 0 walk)) (find-package :keyword))

@@ -59,8 +59,7 @@
                   (procedure-name plan) (run-plan-advice (procedure-name plan))))))
 
 (defun error-in-plan (values)
-  "If VALUES are of RUN-PLAN, and its plan failed by a Lisp error, return the error's text; else
-\"\"."
+  "If VALUES are those of RUN-PLAN after a Lisp error, return the text of the error; else \"\"."
   (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
       (plain-text (failure-text (lisp-failure-condition (first values))))
       ""))
