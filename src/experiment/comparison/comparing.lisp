@@ -53,7 +53,7 @@ Factors with equal values make the contrast's WHERE; the other factors name its 
                         group)))
 
 (defun overall-contrasts (results pairs place names)
-  "Return overall contrasts: one for each two levels compared by several PAIRS with common seeds."
+  "Return overall contrasts: one for any two levels that several PAIRS with common seeds have."
   (loop for (level base . group) in (pairs-by-levels
                                      results
                                      (remove-if-not (lambda (pair) (apply #'common-trials pair))
