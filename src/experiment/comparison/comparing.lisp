@@ -73,7 +73,7 @@ side; else NIL. KIND is the noun for the side that differs."
             ((null (rest firsts)) (format nil "~A against each other ~A" (first firsts) kind))))))
 
 (defun finish-comparison (comparison stream control &rest arguments)
-  "Correct the p values of COMPARISON, print COMPARISON to STREAM unless that is NIL, and return
+  "Correct the p values of COMPARISON, print COMPARISON to STREAM unless STREAM is NIL, and return
 COMPARISON. Signals MISUSE with the text of CONTROL and ARGUMENTS if no contrast has trials."
   (when (every (lambda (contrast) (zerop (contrast-trials contrast)))
                (comparison-contrasts comparison))
@@ -86,8 +86,8 @@ COMPARISON. Signals MISUSE with the text of CONTROL and ARGUMENTS if no contrast
   comparison)
 
 (defun comparison-of-conditions (results pairs place names stream)
-  "Return the comparison, in the measures NAMES, of PAIRS of samples of RESULTS. Print the
-comparison to STREAM unless that is NIL."
+  "Compare PAIRS of samples of RESULTS in the measures NAMES. Return the comparison. Also print it
+to STREAM unless STREAM is NIL."
   (let ((contrasts (loop for (first second) in pairs
                          for contrast = (contrast-of-conditions results first second place)
                          collect (compare-samples contrast results first results second names))))

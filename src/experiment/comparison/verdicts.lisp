@@ -157,7 +157,7 @@
   (let ((first (contrast-first contrast)) (second (contrast-second contrast)))
     (format nil "~@[~A: ~]~A." (contrast-where contrast)
             (cond ((or (null (paired-p difference)) (null (paired-low difference)))
-                   (format nil "~A of ~A and ~A cannot be compared: ~A, and at least 2 are needed"
+                   (format nil "~A of ~A and ~A cannot be compared: ~A, but at least 2 are needed"
                            (paired-measure difference) first second (common-seeds-text difference)))
                   ((plusp (or (paired-rounding difference) 0))
                    (format nil "~A of ~A and ~A differ only by rounding, by at most ~A for any ~

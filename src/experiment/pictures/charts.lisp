@@ -253,9 +253,9 @@ values are the names of series, if there is only one such factor."
 ;;; Differences.
 
 (defun pairs-by-factor (results place)
-  "Return pairs of samples of RESULTS that differ only in the factor with index PLACE, and true. The
-second sample of a pair has the factor's first level. If there is no such pair, pair each other
-sample with the first sample, and return NIL as the second value."
+  "Return two values: pairs of samples of RESULTS that differ only in the factor with index PLACE,
+and T. The second sample of a pair has the factor's first level. If there is no such pair, pair each
+other sample with the first sample, and return NIL as the second value."
   (let ((pairs (pairs-differing-in-factor results place nil (first (levels results place)))))
     (if pairs
         (values pairs t)

@@ -94,7 +94,7 @@ for ticks, :TEXTS for others, :NOTHING if no condition has values" :addition)
 estimate and the two bounds of its interval at CONFIDENCE. Any of these may be NIL. OPTIONS are
   :heading text   what headings of tables add to the name of the measure;
   :interval text  the name of the intervals of KIND in pictures;
-  :beside other   beside each column of the kind OTHER, tables have a column of the kind KIND.
+  :beside other   tables have a column of KIND beside each column of the kind OTHER.
 Return KIND."
   `(progn
      (setf *statistics*

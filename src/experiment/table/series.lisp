@@ -217,7 +217,7 @@ column. The number is 0 if the row has no digest: after a timeout or the end of 
 
 ;; Conditions may have rows without series, from before the clause :each-tick was added.
 (defun select-blocks (rows index line-of)
-  "Return a vector of the blocks in INDEX of the trials in the table ROWS, in the order of ROWS.
+  "Return a vector of the blocks that INDEX has for trials in the table ROWS, in the order of ROWS.
 Signals MISUSE if a trial has no block but other trials of its condition have blocks."
   (let ((blocks (make-array 1000 :adjustable t :fill-pointer 0))
         (seed (seed-column (series-index-columns index))))

@@ -96,7 +96,7 @@ not determine closures, or functions that were set otherwise, for example by a t
       (note-part :function (qualified-symbol-name name) (data-digest values) reach))))
 
 (defun note-weak-references (object symbol reach)
-  "Note in REACH what OBJECT, a part of the value of the variable SYMBOL, holds weakly."
+  "OBJECT is a part of the value of the variable SYMBOL. Note in REACH what OBJECT holds weakly."
   (when (and (weak-object-p object) (first-visit-p object reach))
     (dolist (number (weak-digests object (lambda (atom) (note-weak-references atom symbol reach))))
       (setf (gethash (list :variable (qualified-symbol-name symbol) number)

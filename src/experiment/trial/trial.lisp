@@ -143,16 +143,16 @@ not from RUN-PLAN and a plan can never continue, the trial fails with the reason
     (and undone (format nil "No ticks have passed in the trial, so ~A" undone))))
 
 (defun note-unfinished (result values)
-  "Add an error to RESULT for a plan that can never continue or has not ended, unless RESULT is a
-success. Otherwise add an error if no tick followed commands. VALUES are the values of :run."
+  "VALUES are those of :run. Unless RESULT is a success, add to it an error for a plan that can
+never continue or has not ended. Otherwise add an error if commands were given but no tick passed."
   (let ((text (or (and (not (success-p (result-outcome result)))
                        (or (stranded-plan-text) (unfinished-text values)))
                   (no-ticks-text))))
     (when text (set-first-error result text))))
 
 (defun note-unnoticed-failures (result values failed)
-  "If RESULT is a success, add an error for the first of the FAILED tasks that :run did not return
-as its first value. A failure counts as true, so :run may have taken the failure for success."
+  "If RESULT is a success, add an error for the first of FAILED, tasks, whose failure is not the
+first value of :run. A failure counts as true, so :run may have taken the failure for success."
   (let ((task (find (first values) failed :key #'task-result :test-not #'eq)))
     (when (and task (success-p (result-outcome result)))
       (set-first-error result
