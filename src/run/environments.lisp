@@ -21,7 +21,7 @@ simulation are undone at its end and do not affect other simulations.")
   (timeline-fork-p (simulation-timeline simulation)))
 
 (defun environment-in-this-thread (simulation)
-  "Return a list (symbol . value) of the variables of SIMULATION as this thread sees them."
+  "Return an alist from the variables of SIMULATION to their values in this thread."
   (let ((value-of (if (or (headless-p simulation) (eq simulation *simulation*))
                       #'symbol-value
                       #'global-value)))
@@ -35,13 +35,13 @@ simulation are undone at its end and do not affect other simulations.")
 ;;; variables of the one that is current outside are restored.
 
 (defvar *saved-outer-globals* nil
-  "In a headless simulation, a list; its REST holds saved global values. The REST is empty until
-another live run is started in the simulation. Then it is (run (symbol . value)...): the live run
-that was current outside, and the values of *SIMULATION-VARIABLES* in that run.")
+  "In a headless simulation, a list. Its REST is empty until a live run is started in the simulation
+while another live run is current outside. Then REST is (run (symbol . value)...): the outer run,
+and the values of *SIMULATION-VARIABLES* in the outer run.")
 
 (defun save-outer-globals (simulation)
-  "Save the global values of *SIMULATION-VARIABLES*, which SIMULATION is about to set, if SIMULATION
-was started in a headless simulation while another live run is current outside."
+  "SIMULATION is about to set the global values of *SIMULATION-VARIABLES*. Save the old values if
+SIMULATION was started in a headless simulation while another live run is current outside."
   (let ((current (global-value '*simulation*)))
     (when (and *saved-outer-globals*
                (null (rest *saved-outer-globals*))
@@ -60,22 +60,22 @@ was started in a headless simulation while another live run is current outside."
             do (setf (global-value symbol) value)))))
 
 (defun set-variables-globally (simulation)
-  "If SIMULATION is live, set the global values of *SIMULATION-VARIABLES* to their values in this
-thread, for all threads of SIMULATION. The variables may be bound in this thread, by a headless
-simulation in which SIMULATION was started."
+  "If SIMULATION is live, set the global values of *SIMULATION-VARIABLES*, which all its threads
+see, to the values in this thread. If SIMULATION was started in a headless simulation, the variables
+are bound in this thread."
   (when (live-p simulation)
     (save-outer-globals simulation)
     (dolist (symbol *simulation-variables*)
       (setf (global-value symbol) (symbol-value symbol)))))
 
 (defun store-environment (simulation)
-  "Store the current values of its variables in SIMULATION. This thread works in SIMULATION."
+  "Store the current values of SIMULATION's variables in SIMULATION, where this thread works."
   (setf (simulation-environment simulation) (environment-in-this-thread simulation))
   (set-variables-globally simulation))
 
 (defun environment-of (simulation)
-  "Return a list (symbol . value) of the variables of SIMULATION, in any thread. The list includes
-the dice that SIMULATION was loaded with, if any."
+  "Return an alist from the variables of SIMULATION to their values. Any thread may call this. The
+alist includes the dice that SIMULATION was loaded with, if any."
   (or (and (headless-p simulation)
            (not (eq simulation *simulation*))
            (simulation-environment simulation))
@@ -86,13 +86,13 @@ the dice that SIMULATION was loaded with, if any."
             environment))))
 
 (defun restore-environment (simulation)
-  "Set the variables to the values stored in SIMULATION, to which this thread returns."
+  "This thread returns to SIMULATION. Set the variables to their values stored in SIMULATION."
   (when (headless-p simulation)
     (loop for (symbol . value) in (simulation-environment simulation)
           do (unless (eq value (symbol-value symbol)) (setf (symbol-value symbol) value)))))
 
 (defun call-in-environment (simulation function)
-  "Call FUNCTION with bindings for the variables of SIMULATION, in which this thread does not work.
+  "Call FUNCTION with the variables of SIMULATION bound. This thread does not work in SIMULATION.
 Store the last values of the variables in SIMULATION, or globally if SIMULATION is live."
   (let* ((environment (environment-of simulation)) (symbols (mapcar #'car environment)))
     (progv symbols (mapcar #'cdr environment)

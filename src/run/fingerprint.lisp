@@ -30,8 +30,8 @@ their methods are compared instead.")
 ;;; Definitions in use, as lists (kind name).
 
 (defun names-used-by-things (simulation name entries)
-  "Return the names of the entries of all things in SIMULATION, without duplicates. The function
-ENTRIES returns the list of entries of a thing, the function NAME the name of an entry."
+  "Return the names of the entries of all things in SIMULATION, without duplicates. ENTRIES is a
+function that returns a thing's list of entries, NAME one that returns an entry's name."
   (let ((names '()))
     (do-things (thing (simulation-world simulation))
       (dolist (entry (funcall entries thing))
@@ -103,7 +103,7 @@ ENTRIES returns the list of entries of a thing, the function NAME the name of an
     (and manipulation (manipulation-methods manipulation))))
 
 (defun sources-of (definitions)
-  "Return the sources of DEFINITIONS, without duplicates and only those that are files."
+  "Return those sources of DEFINITIONS that are files, without duplicates."
   (remove-duplicates
    (loop for definition in definitions
          for entry = (definition-registry-entry definition)
@@ -181,7 +181,8 @@ of all definitions that are compared."
 ;;; How they differ.
 
 (defun unchanged-p (definition now)
-  "True if DEFINITION is among the current definitions NOW, or was and still is undefined."
+  "True if DEFINITION is in NOW, the current definitions, or was recorded as undefined and still
+is."
   (if (recorded-as-undefined-p definition)
       (not (member definition now :test #'same-definition-p))
       (member definition now :test #'equal)))
@@ -206,7 +207,7 @@ number of a definition that has changed becomes :CHANGED."
               (same-name-p :file kind) bare))))
 
 (defun difference-text (definition others)
-  "Return a text on how DEFINITION (kind name number) differs from its namesake in OTHERS; or NIL."
+  "Return a text about how DEFINITION (kind name number) differs from the one in OTHERS, or NIL."
   (let ((other (find definition others :test #'same-definition-p))
         (number (third definition)))
     (cond ((recorded-as-undefined-p definition)
@@ -221,6 +222,5 @@ number of a definition that has changed becomes :CHANGED."
            (format nil "~A has changed since the recording" (kind-and-name-text definition))))))
 
 (defun definition-difference-texts (definitions)
-  "Return a list of texts about how DEFINITIONS of a journal differ from the current definitions."
   (let ((others (current-definitions definitions)))
     (remove nil (mapcar (lambda (definition) (difference-text definition others)) definitions))))

@@ -26,7 +26,8 @@
       timeline))
 
 (defun copy-run (simulation copier)
-  "Return a copy of SIMULATION by COPIER, with the participants in COPIER's options and no journal."
+  "Return a copy of SIMULATION, made by COPIER, with the participants in its options and no
+journal."
   (let ((copy (copying (copier)
                 (forked (simulation-world simulation) copier)
                 (let ((copy (forked simulation copier)))
@@ -46,8 +47,8 @@
     copy))
 
 (defun fork-options (simulation continuations decisions)
-  "Return the options of a copier that forks SIMULATION. If CONTINUATIONS, it also copies the
-continuations of commands in progress. DECISIONS, an alist, replaces values that cannot be copied."
+  "Return the options of a copier that forks SIMULATION. It copies continuations of commands only if
+CONTINUATIONS is true. DECISIONS is an alist from values that cannot be copied to replacements."
   (list :simulation simulation
         :world (simulation-world simulation)
         :participants (simulation-participants simulation)
@@ -58,14 +59,13 @@ continuations of commands in progress. DECISIONS, an alist, replaces values that
                           (simulation-participants simulation)))))
 
 (defun copy-without-participants (simulation)
-  "Return a copy of SIMULATION, which is between ticks, without its participants."
   (with-copier (copier :options (list :simulation simulation
                                       :world (simulation-world simulation)))
     (copy-run simulation copier)))
 
 (defun environment-for-fork (simulation)
-  "Return the environment, a list (symbol . value), to copy for a fork of SIMULATION. If SIMULATION
-has no dice for CL:RANDOM, as in a live run, new dice are made."
+  "Return the environment to copy for a fork of SIMULATION: an alist from variables to values. If
+SIMULATION has no dice for CL:RANDOM, as in a live run, new dice are made."
   (let ((environment (environment-of simulation)))
     (if (assoc *random-state-variable* environment)
         environment
@@ -75,7 +75,7 @@ has no dice for CL:RANDOM, as in a live run, new dice are made."
 
 ;; If a continuation makes a fork, other continuations and plans have not acted yet in that tick.
 (defun finish-tick (fork phase)
-  "Pass the rest of the tick in which FORK was made, in the phase PHASE."
+  "FORK was made in the phase PHASE of a tick. Pass the rest of this tick."
   (when (<= (phase-number :continuations) phase (phase-number :observers))
     (call-in-simulation fork (lambda ()
                                (deliver-notifications (simulation-timeline fork))
@@ -138,8 +138,8 @@ Signals MISUSE after +FORK-ATTEMPTS+ attempts."
 
 ;; The restarts are made in this thread, which asked for the fork: another may own the run.
 (defun ask-about-uncopiable-value (condition)
-  "Signal CONDITION, a CANNOT-FORK, with restarts. Return the replacement in the fork for the value
-that cannot be copied, and true; or NIL and false if the user wants no fork."
+  "Signal CONDITION, a CANNOT-FORK, with restarts. Return two values: the fork's replacement for the
+value that cannot be copied, and true. If the user wants no fork, return NIL and false."
   (restart-case (error condition)
     (share-value ()
       :report "Let both runs have the same one."
@@ -192,7 +192,7 @@ would, given the same requests. ARGUMENTS are the simulation, by default the cur
 - A live run is forked between two ticks. In a live run, CL:RANDOM uses the dice of each thread; in
   the fork it draws other numbers. All else continues as in the original.
 - Observers stay with the original.
-Signals MISUSE inside a tick (continuations run between ticks), and inside a plan's own step.
+Signals MISUSE inside a tick and inside a plan's own step; a continuation runs between ticks.
 Signals CANNOT-FORK, with restarts, for state outside the run; MAKE-NO-FORK returns NIL."
   (multiple-value-bind (simulation options) (parse-fork-arguments arguments)
     (check-fork-options options)

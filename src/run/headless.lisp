@@ -29,9 +29,9 @@ simulation keeps a journal. THINKING is the thinking mode."
 (defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep
                                                (thinking :free) (errors :report) variables)
   "Call FUNCTION without arguments in a new headless simulation of ROBOTS, and return its values.
-ROBOTS is a robot, its name, or a list of robots and names. VARIABLES are symbols of any package;
-each is bound to the robot in ROBOTS that has the same name. The other
-arguments are options of WITH-SIMULATION."
+ROBOTS is a robot, its name, or a list of robots and names. VARIABLES are symbols of any package.
+Like the names of ROBOTS, each is bound to the robot of that name. The other arguments are options
+of WITH-SIMULATION."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking-mode 'with-simulation thinking)
   (check-argument with-simulation errors (typep errors 'error-policy)
@@ -48,9 +48,9 @@ arguments are options of WITH-SIMULATION."
                          :variables variables :keep keep)))))
 
 (defun call-in-headless (function simulation &key variables keep)
-  "Call FUNCTION with the headless SIMULATION as the current simulation. The names of its robots,
-and VARIABLES, further symbols that name some of them, are bound to them. KEEP says how many forks
-the run keeps, see KEEP-FORKS. The run is over at the end."
+  "Call FUNCTION with the headless SIMULATION as the current simulation. Bind the names of its
+robots to the robots. VARIABLES are further symbols to bind, each to the robot of the same name.
+KEEP says how many forks the run keeps, see KEEP-FORKS. The run is over at the end."
   (when *simulation* (store-environment *simulation*))
   (let* ((*message-queue* (simulation-messages simulation))
          (*simulation* simulation)
@@ -79,8 +79,8 @@ the run keeps, see KEEP-FORKS. The run is over at the end."
         (restore-outer-globals)))))
 
 (defun call-reporting-errors (function simulation)
-  "Call FUNCTION in the headless SIMULATION; then end the run. Unread errors are shown or signalled,
-as the error policy of the message queue of SIMULATION says."
+  "Call FUNCTION in the headless SIMULATION; then end the run. Show or signal unread errors,
+according to the error policy of the simulation's message queue."
   (let ((queue (simulation-messages simulation)) (left-p t))
     (multiple-value-prog1
         (in-any-case
@@ -124,7 +124,7 @@ SIMULATION was forked, because ticks may have passed in the fork."
       (call-listeners *rewound-end-hooks* simulation last))))
 
 (defun variables-among (names)
-  "NAMES is a list of names or a single name. Return a list of those that can be variables."
+  "NAMES is a list of names or a single name. Return a list of the names that can be variables."
   (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
                  (ensure-list names)))
 
@@ -141,10 +141,10 @@ SIMULATION was forked, because ticks may have passed in the fork."
 
 (addition simulation-errors)
 (defun simulation-errors (&optional (simulation (current-simulation)))
-  "Return the latest errors in user code called by SIMULATION and failures of its plans, at most
-1000, as USER-CODE-ERRORs, the oldest first. They include errors that were signalled, shown or read.
-If SIMULATION was rewound, its successor is used. When a simulator starts, the errors of earlier
-live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
+  "Return a list of at most 1000 USER-CODE-ERRORs, the oldest first: the latest errors in user code
+that SIMULATION called, and failures of its plans. They include errors already signalled, shown or
+read. If SIMULATION was rewound, its successor is used. When a simulator starts, the errors of
+earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
   (let ((simulation (latest-successor (resolve-simulation simulation 'simulation-errors))))
     (user-code-errors-in (simulation-messages simulation)
                (lambda (run) (or (null run) (eq simulation (latest-successor run)))))))
@@ -219,9 +219,9 @@ ends, the run is over: commands in progress are interrupted, and the robots take
 After an error in user code or a failure of a plan, the run continues. ERRORS says how it is
 reported:
 - :REPORT queues a message. At the end of BODY, unread messages of this kind are written to the
-  error output. So are other unread errors, except those of commands with a continuation, and unread
-  warnings that are given once in a run, for example about degrees for radians or about commands
-  issued after the last tick.
+  error output. The same is done with other unread errors, but not with errors of commands that have
+  a continuation. It is also done with unread warnings that are given once in a run, for example
+  about degrees for radians or about commands issued after the last tick.
 - :SIGNAL signals the first error or failure as a USER-CODE-ERROR. RUN-TICKS signals it at the end
   of the tick, or WITH-SIMULATION at its own end.
 - :COLLECT only queues a message; SIMULATION-ERRORS returns the errors and failures.

@@ -35,7 +35,7 @@
                 (journal-end journal) +latest-end+)))
 
 (defun entry-datum (entry)
-  "Return ENTRY in the form in which files contain it, with a keyword for the operator."
+  "Return ENTRY in the form used in files, with a keyword for the operator."
   (list* (first entry) (make-keyword (symbol-name (second entry))) (cddr entry)))
 
 (defun journal-data (journal)
@@ -103,7 +103,6 @@
              object))
 
 (defun settings-error-text (settings)
-  "Return a text about an error in SETTINGS, lists (name value) of parameters, or NIL."
   (handler-case (call-with-parameters settings (constantly nil))
     (ars-magna-error (trouble) (one-line-text trouble))))
 
@@ -111,7 +110,6 @@
   (/= (length names) (length (remove-duplicates names :test #'string-equal))))
 
 (defun header-error-text (header)
-  "Return a text about an error in HEADER, the header of a journal, or NIL."
   (flet ((wrong-p (key predicate) (not (funcall predicate (getf header key)))))
     (cond ((not (plist-p header)) "the head is no list of names and values")
           ((wrong-p :map #'stringp) "the head names no map")
@@ -146,7 +144,7 @@
                  (short-text (plain-name (second entry)))))))
 
 (defun checked-entries (data)
-  "Return the entries in DATA with symbols as operators. Signals an error that names the wrong one."
+  "Return the entries in DATA with symbols as operators. Errors name the first invalid entry."
   (loop with tick = 0
         for entry in data
         for number from 1
@@ -187,7 +185,7 @@
 
 (defun read-journal (file &optional (operator 'read-journal))
   "Return the journal in FILE. Error messages name OPERATOR, which was called with FILE. Signals
-DAMAGED-JOURNAL, which names the wrong entry, if FILE does not contain a complete journal;
+DAMAGED-JOURNAL, which names an invalid entry, if FILE does not contain a complete journal;
 WRONG-ARGUMENT unless FILE is a file name."
   (unless (typep file '(or string pathname))
     (reject-argument operator 'journal file

@@ -88,13 +88,13 @@ they close over. See RESTORED-ARGUMENTS."
   (if (some #'functionp arguments) (memorize-arguments arguments) arguments))
 
 (defun restored-arguments (arguments simulation)
-  "Return ARGUMENTS, a value of ARGUMENTS-TO-KEEP, for SIMULATION, which repeats the recorded run."
+  "Return the arguments in ARGUMENTS, a value of ARGUMENTS-TO-KEEP, for the replay SIMULATION."
   (if (some #'functionp arguments) (recall-arguments arguments simulation) arguments))
 
 ;; Requests made inside the tick, by kickers and events, are made again when it is repeated.
 (defun record-operation (simulation operator arguments &optional request)
-  "Record a call of OPERATOR, a symbol, with the list ARGUMENTS, or the REQUEST for this call, at
-the current tick. It is recorded in the journal and past of SIMULATION, if SIMULATION keeps them."
+  "Record that OPERATOR, a symbol, is called with the list ARGUMENTS at the current tick, perhaps
+for REQUEST. Record it in the journal and in the past of SIMULATION, if SIMULATION keeps them."
   (when (recording-p simulation)
     (let ((arguments (externalize arguments)) (journal (simulation-journal simulation)))
       (when (and journal (not (and request (requested-inside-tick-p request))))
@@ -131,7 +131,7 @@ values that DIRTY-SIMULATION would restore have changed, record these, too."
 (define-constant +remark-limit+ 1000 :documentation "The largest number of remarks in a journal.")
 (define-constant +part-limit+ 500
   :documentation "A journal with this many remarks gets no more remarks about parts of plans. A plan
-that tries repeatedly makes many such remarks, and other remarks need room.")
+that retries makes many of them, and would leave no room for other remarks.")
 
 (defun room-for-remark-p (journal kind)
   (< (length (journal-remarks journal)) (if (eq kind :part) +part-limit+ +remark-limit+)))
@@ -156,7 +156,6 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
                               (remove remark remarks :test #'eq))))))
 
 (defun add-error-remark (text)
-  "Add a remark with the TEXT of an error in users' code to the journal of the current run, if any."
   (when *simulation*
     (let ((robots (simulation-robots *simulation*)))
       (add-remark *simulation* :error text (and (null (rest robots)) (first robots))))))
@@ -177,7 +176,7 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
                             :definitions (definitions-depended-on simulation)))))
 
 (defun set-initial-thinking (simulation mode)
-  "Set the thinking mode of SIMULATION, also in its journal, to MODE. No tick has passed yet."
+  "Set the thinking mode of SIMULATION and of its journal to MODE. No tick has passed yet."
   (set-timeline-thinking (simulation-timeline simulation) mode)
   (when (simulation-journal simulation)
     (setf (getf (journal-header (simulation-journal simulation)) :thinking)
@@ -194,7 +193,8 @@ since the journal was begun. No tick of SIMULATION has passed yet."
   (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
 
 (defun journal-up-to-now (simulation)
-  "Return the journal of SIMULATION, extended to now unless it is full. Signals MISUSE if none."
+  "Return the journal of SIMULATION, extended to the current tick unless the journal is full.
+Signals MISUSE if SIMULATION keeps no journal."
   (let ((journal (or (simulation-journal simulation)
                      (reject-use "This simulation keeps no journal. Start it with a journal: ~
                                   (with-simulation (ROBOT :journal t) ...), or (simulator ROBOT) ~
@@ -217,7 +217,7 @@ since the journal was begun. No tick of SIMULATION has passed yet."
 ;;; a replay repeats them. Nor are changes of a world whose run is over.
 
 (defun check-not-of-past-run (timeline operator)
-  "Signal MISUSE if OPERATOR, in another run, changes the world of TIMELINE, whose run is over."
+  "Signal MISUSE if the run of TIMELINE is over, and OPERATOR changes its world from another run."
   (let ((own (and *simulation* (timeline-of *simulation*))))
     (when (and own (timeline-over timeline) (not (eq own timeline)))
       (reject-finished-run "~(~A~): this object belongs to another run in ~(~A~), which is over: ~
@@ -242,7 +242,7 @@ between two runs and this code works in another run."
                               operator (timeline-name (world-timeline world))))))))
 
 (defun perform-change (world operator arguments)
-  "Change WORLD, which this thread owns, by OPERATOR with ARGUMENTS, which OPERATOR checks again."
+  "Change WORLD, which this thread owns: call OPERATOR with ARGUMENTS. It checks ARGUMENTS again."
   (let ((*world* world)
         (*simulation* (world-simulation world)))
     (apply (operator-function (find-operator operator)) arguments)))

@@ -14,7 +14,7 @@
        (starts-with-subseq "Lisp" (asker-note-text (request-asker request)))))
 
 (defun wrong-simulation-remedy (simulation)
-  "Return a remedy for requests to SIMULATION made in another run since its last tick, or NIL."
+  "If another run has made requests to SIMULATION since its last tick, return a remedy; else NIL."
   (and (requested-by-other-run-p (simulation-world simulation))
        (one-line "The request was made inside another with-simulation, and only its ticks passed.
 There, use the robot that it names, or name both: (with-simulation ((ROBOT OTHER)) ...).")))
@@ -48,7 +48,8 @@ last tick. Requests that only stop something do not count. Return NIL if there a
   "How to pass ticks at the prompt.")
 
 (defun undone-request-names (simulation)
-  "Return two lists of names: of requests to SIMULATION and plans not begun; of these plans alone."
+  "Return two lists of names: first the requests to SIMULATION and the plans that have not begun,
+then these plans alone."
   (let ((plans (unfinished-work-texts simulation))
         (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
                         ;; For requests of plans, the plan is named.
@@ -70,7 +71,7 @@ last tick. Requests that only stop something do not count. Return NIL if there a
 
 (defun cut-off-work-texts (simulation)
   "Return a list of texts about work that the end of SIMULATION cuts off. Return NIL if the program
-has checked itself which work was in progress; checks made by a prompt do not count."
+itself has checked which work was in progress; checks by a prompt do not count."
   (when (or (belongs-to-prompt-p simulation)
             (not (progress-checked-p (simulation-world simulation))))
     (loop for participant in (simulation-participants simulation)

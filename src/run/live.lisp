@@ -9,11 +9,11 @@
   "Functions called when SIMULATOR has started a run, with the robot and the plist of the options.")
 
 (defvar *simulator-hook-options* '()
-  "The names of the options of SIMULATOR that its hooks use, as symbols that are no keywords.")
+  "The names of the options of SIMULATOR that its hooks use, as symbols but not keywords.")
 
 (defun call-with-thread-bindings (simulation function)
-  "Call FUNCTION with the bindings of the thread of SIMULATION. The bindings include the robots'
-names bound where SIMULATION was started, for example by WITH-SIMULATION around SIMULATOR."
+  "Call FUNCTION with the bindings of the thread of SIMULATION. They include the bindings of robots'
+names in effect where SIMULATION was started, for example by a WITH-SIMULATION around SIMULATOR."
   (let ((*simulation* simulation)
         (*world* (simulation-world simulation))
         (*message-queue* (simulation-messages simulation))
@@ -67,7 +67,7 @@ successor. Return SIMULATION."
 ;;; Starting and stopping.
 
 (defun restart-world (world seed)
-  "Reset WORLD, which this thread owns, and its robots, with a new timeline. Return the new run."
+  "Reset WORLD and its robots with a new timeline. This thread owns WORLD. Return the new run."
   (let ((custody (timeline-custody (world-timeline world)))
         (variables (simulation-variables (world-simulation world))))
     (deferring-interrupts
@@ -83,7 +83,7 @@ successor. Return SIMULATION."
        (or (not journal) (simulation-journal simulation))))
 
 (defun simulation-to-start (world seed journal)
-  "Return the simulation of WORLD to run live. It is new if the last simulation is over, has passed
+  "Return the simulation of WORLD that is to run live: a new one if the last is over, has passed
 ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the dice."
   (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation)))
     (cond ((not (startable-p simulation journal))
@@ -118,8 +118,8 @@ MISUSE in a nested call, when this thread is already starting WORLD."
           (global-value '*world*) (simulation-world simulation))))
 
 (defun start-world (world rate seed journal keep thinking everywhere)
-  "Run WORLD, which this thread owns, live with the options of SIMULATOR, and make its run the
-current simulation, see MAKE-CURRENT-SIMULATION. Return the run."
+  "Run WORLD live, with the options of SIMULATOR, and make its run the current simulation, see
+MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
   (let ((simulation (simulation-to-start world seed journal)))
     (set-initial-thinking simulation thinking)
     (if journal
@@ -146,12 +146,11 @@ current simulation, see MAKE-CURRENT-SIMULATION. Return the run."
                              (start-world world rate seed journal keep thinking everywhere))))))
 
 (defun check-not-fork (robot)
-  "Signal MISUSE if ROBOT is in a fork, which cannot run live."
   (when (timeline-fork-p (ensure-timeline (robot-world robot)))
     (reject-use "simulator: ~A is in a fork, which has no clock: use RUN-TICKS there." robot)))
 
 (defun check-options-of-simulator (options)
-  "Signal MISUSE if the plist OPTIONS has an option of neither SIMULATOR nor its hooks."
+  "Signal MISUSE if the plist OPTIONS has an option that neither SIMULATOR nor its hooks know."
   (unless (getf options :allow-other-keys)
     (let ((strange (wrong-keyword-text `(&key rate seed journal keep thinking
                                            ,@*simulator-hook-options*)

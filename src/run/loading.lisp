@@ -152,7 +152,7 @@ Parameters that are not in SETTINGS get their defaults."
   (if (operation-p request) (operation-resource request) (first (request-arguments request))))
 
 (defun complete-loading (simulation head loader requests)
-  "Make SIMULATION of LOADER ready to continue, with REQUESTS waiting. Return SIMULATION."
+  "Make SIMULATION, loaded by LOADER, ready to continue, with REQUESTS waiting. Return SIMULATION."
   (let ((world (simulation-world simulation)) (timeline (simulation-timeline simulation)))
     (destructuring-bind (agenda tick . events) (loader-agenda loader)
       (unless (eq agenda (timeline-agenda timeline)) (error "the agenda does not belong to the ~
@@ -173,7 +173,7 @@ Parameters that are not in SETTINGS get their defaults."
     simulation))
 
 (defun simulation-from-lines (reader head octets)
-  "Return the simulation in READER, a file of OCTETS octets. Its head, HEAD, has been read already."
+  "Return the simulation in READER, a file of OCTETS octets. HEAD is its head, already read."
   (let ((loader (make-empty-loader octets)))
     (read-object-definitions reader loader)
     (let* ((requests (read-object-contents reader loader))
@@ -191,7 +191,6 @@ Parameters that are not in SETTINGS get their defaults."
 ;;; Loading. The head is read first, so that an error can name the definitions that are missing.
 
 (defun read-saved-run-head (file)
-  "Return the head of the saved run in FILE. Signals DAMAGED-SIMULATION."
   (reading-file (in file :run 'damaged-simulation) (read-head (make-line-reader in 0 0))))
 
 (defun read-simulation (file)

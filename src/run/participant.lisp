@@ -50,8 +50,8 @@
   (digest-state participant digest))
 
 (define-participant-function participant-copy (participant simulation copier)
-  "Return the copy of PARTICIPANT for SIMULATION, a fork of its run by COPIER, or NIL if the fork
-needs no copy. By default, participants defined by DEFINE-KIND are copied. See COPY-PLAN-VALUE."
+  "Return the copy of PARTICIPANT, made by COPIER, for the fork SIMULATION; NIL if it is not needed.
+By default, participants defined by DEFINE-KIND are copied. See COPY-PLAN-VALUE."
   (and (kind-of participant) (forked participant copier)))
 
 (define-participant-function participant-place (participant value)

@@ -21,8 +21,8 @@
                  by (wait-time N).")))
 
 (defun await-custody (simulation)
-  "Wait a moment for another thread that owns SIMULATION only in order to inspect it. Signals MISUSE
-if that thread passes ticks of SIMULATION."
+  "Another thread owns SIMULATION. Wait a moment if that thread only inspects SIMULATION. Signals
+MISUSE if it passes ticks of SIMULATION."
   (when (timeline-passing-p (simulation-timeline simulation))
     (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. Only one thread at a ~
                  time can do so."
@@ -77,7 +77,6 @@ restart CONTINUE passes the remaining ticks."
       (notify-participants-after-ticks simulation))))
 
 (defun notify-participants-after-ticks (simulation)
-  "Let the participants of SIMULATION act after RUN-TICKS or RUN-UNTIL has passed ticks."
   (dolist (participant (simulation-participants simulation))
     (participant-after-ticks participant simulation)))
 
@@ -200,7 +199,8 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
 
 (defun wait-on-idle-semaphore (idle seconds simulation)
   "Wait at most SECONDS until SIMULATION is idle. Return true if it is. The semaphore IDLE is
-signalled when it may be idle, but not when a plan ends. Signals MISUSE if SIMULATION has failed."
+signalled when SIMULATION may be idle, but not when a plan ends. Signals MISUSE if SIMULATION has
+failed."
   (loop with due = (+ (seconds-now) seconds)
         do (check-not-failed simulation)
         thereis (all-at-rest-p simulation)

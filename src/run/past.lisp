@@ -12,11 +12,11 @@
 (defstruct (act (:constructor make-act (kind tick phase moment own-p operator arguments asker))
                 (:copier nil))
   "A request or change to a run, called an act. KIND is :REQUEST for a request performed at the
-start of a tick, else :CHANGE. TICK is the tick in which the act was made, or the tick before it if
-the act was made between ticks. PHASE is the phase of that tick, or 0 between ticks. OWN-P is true
-if forks repeat the act by themselves. MOMENT is the number of earlier acts of this kind in the
-tick. OPERATOR is a function or the name of an operator. ARGUMENTS are memorized and, with a name,
-also externalized. ASKER is a note of who made the act, or NIL."
+start of a tick, else :CHANGE. TICK is the tick in which the act was made; for an act made between
+two ticks, the earlier tick. PHASE is the phase of that tick, or 0 between ticks. OWN-P is true if
+forks repeat the act by themselves. MOMENT is the number of earlier acts of this kind in the tick.
+OPERATOR is a function or the name of an operator. ARGUMENTS are memorized and, if OPERATOR is a
+name, also externalized. ASKER is a note of who made the act, or NIL."
   (kind :change :type (member :request :change) :read-only t)
   (tick 0 :type fixnum :read-only t)
   (phase 0 :type fixnum :read-only t)
@@ -105,8 +105,8 @@ since the last call, or NIL. Only in a headless run do all programs share the sa
     (when rolled (record-act simulation #'restore-random-snapshot (list rolled)))))
 
 (defun record-outside-act (simulation function &rest arguments)
-  "If SIMULATION has a past, record a program's act outside the run and its journal. FUNCTION with
-ARGUMENTS repeats it. Acts that a fork repeats by itself are not recorded. Return nothing."
+  "If SIMULATION has a past, record there an act of a program that no journal records. FUNCTION with
+ARGUMENTS repeats the act. Acts that a fork repeats by itself are not recorded. Return nothing."
   (when (and (simulation-past simulation)
              (not (continues-in-forks-p))
              ;; In these phases only code that a fork runs, too, can act.
@@ -185,7 +185,7 @@ whose removal leaves the smallest gap in proportion to its age."
                                   (string-right-trim "." (brief-condition-text condition))))))
 
 (defun make-fork-to-keep (simulation past)
-  "Return a fork of SIMULATION with PAST; :BUSY if a participant is busy; NIL if this fails."
+  "Return a fork of SIMULATION, :BUSY if a participant is busy, or NIL if forking fails."
   (handler-case (call-through-participants #'participant-at-rest
                                            (simulation-participants simulation)
                              (lambda () (fork-now simulation nil '())))
@@ -201,7 +201,7 @@ whose removal leaves the smallest gap in proportion to its age."
 
 ;; The clock is coarse, so the cost is averaged over many forks.
 (defun update-fork-cost (past began)
-  "Update the average cost of a fork in PAST by a fork just made, begun at time BEGAN, in seconds."
+  "Update the average cost of a fork in PAST with a fork that was begun at time BEGAN, in seconds."
   (let ((cost (+ (* 15/16 (past-cost past)) (* 1/16 (- (seconds-now) began)))))
     (setf (past-cost past) cost
           (past-due past) (if (< *fork-time-share* 1)
@@ -227,7 +227,7 @@ participant is busy, try again at the end of the next tick."
       (update-fork-cost past began))))
 
 (defconstant +max-fork-checks+ 100
-  "How often a thread waiting for a fork checks whether the fork was made, before it gives up.")
+  "How many times a thread checks whether the fork that it waits for was made, before it gives up.")
 
 (defun await-postponed-fork (simulation)
   "If a fork of SIMULATION was postponed because this thread was busy, wait until the fork is made

@@ -17,7 +17,7 @@
 (defconstant +longest-number+ 1000 "The most characters of a number.")
 
 (defun tree-p (datum)
-  "True if DATUM is a tree without cycles within +MAX-DATUM-CONSES+ and +DEEPEST-NESTING+."
+  "True if DATUM has no cycles and does not exceed +MAX-DATUM-CONSES+ and +DEEPEST-NESTING+."
   (let ((left +max-datum-conses+))
     (labels ((visit (datum depth)
                (loop while (consp datum)
@@ -100,7 +100,7 @@
     (t (prin1 datum stream))))
 
 (defmacro with-plain-syntax (&body body)
-  "Run BODY, which prints and reads numbers, in standard syntax and not by the user's settings."
+  "Run BODY, which prints and reads numbers, in standard syntax, whatever the user's settings are."
   `(with-standard-io-syntax
      (let ((*read-default-float-format* 'double-float) (*read-eval* nil) (*print-readably* nil))
        ,@body)))
@@ -134,7 +134,6 @@
          (or (= end (length word)) (exponent-p word end)))))
 
 (defun number-text-p (word)
-  "True if WORD is an integer, ratio or float."
   (let* ((start (skip-sign word 0)) (end (skip-digits word start)))
     (and (< start end)
          (or (= end (length word))
@@ -193,7 +192,7 @@
       (setf (gethash text *uninterned-symbols*) (make-symbol name))))
 
 (defun find-or-make-symbol (text)
-  "Return the symbol that TEXT, PACKAGE::NAME, names; if it does not exist, an uninterned symbol."
+  "Return the symbol that TEXT, PACKAGE::NAME, names, or an uninterned symbol if none exists."
   (let* ((colons (or (search "::" text) (error "a name has no package")))
          (package (find-package (subseq text 0 colons)))
          (name (subseq text (+ 2 colons))))
@@ -213,7 +212,7 @@
         (error "no object has the number ~A" (subseq word 1 (min 40 (length word)))))))
 
 (defun find-or-make-keyword (name word)
-  "Return the keyword NAME, written as WORD; if it does not exist, an uninterned symbol."
+  "Return the keyword NAME, written as WORD, or an uninterned symbol if none exists."
   (cond ((find-symbol name :keyword))
         (*numbered-objects* (make-keyword name))
         (t (uninterned-symbol word name))))

@@ -41,8 +41,8 @@ time, too. If ACT has an operator, an error is recorded as a divergence."
 ;;; Requests.
 
 (defun same-request-p (request act)
-  "True if REQUEST and the request of ACT are the same. If REQUEST is not an event, only the first
-arguments are compared: which of its commands a plan withdraws is known only on withdrawal."
+  "True if REQUEST and the request of ACT are the same. Unless REQUEST is an event, compare only the
+first arguments: what a plan withdraws is not known before the withdrawal."
   (destructuring-bind (operator . arguments) (request-entry request)
     (let ((arguments (externalize arguments)))
       (and (eq operator (act-operator act))
@@ -70,7 +70,7 @@ arguments are compared: which of its commands a plan withdraws is known only on 
       (pop (repetition-acts repetition)))))
 
 (defun redo-in-tick (repetition)
-  "Repeat acts of this tick after the world changed, up to this moment (RECORD-CODE-MOMENT)."
+  "Repeat acts of this tick after the world's changes, up to now. See RECORD-CODE-MOMENT."
   (loop with moments = (timeline-moments (simulation-timeline (repetition-simulation repetition)))
         for act = (pop-due-act repetition (lambda (act)
                                             (and (eq :change (act-kind act))

@@ -9,7 +9,7 @@
 ;;; (:the :list ...), dotted lists as (:the :list* ...).
 
 (defun nameable-p (object)
-  "True if OBJECT is of a type for which DEREFERENCE can find objects by references."
+  "True if OBJECT has a type whose objects DEREFERENCE can find by a reference."
   (typep object '(or thing attachment robot part designator odometer map kicker recipe)))
 
 (defun externalize-list (list)
@@ -141,7 +141,7 @@ SIMULATION to the simulation."
   (reference nil :type list :read-only t))
 
 (defun placeholder-for (object)
-  "Return what represents OBJECT, which is not copied, in memorized arguments."
+  "OBJECT is not copied. Return the object that represents OBJECT in memorized arguments."
   (cond ((nameable-p object)
          (let ((reference (externalize object)))
            (if (eq reference object) object (make-object-placeholder reference))))

@@ -22,7 +22,7 @@
 
 (defun header-differences (header blueprints)
   "Return a list of texts about how the current definitions differ from those in HEADER. BLUEPRINTS
-are the robots' blueprints. A text says so if a robot is now in another map."
+are the robots' blueprints. There is also a text for each robot that is now in another map."
   (append (definition-difference-texts (getf header :definitions))
           (loop with map = (find-map (getf header :map) nil)
                 for blueprint in blueprints
@@ -86,7 +86,6 @@ are the robots' blueprints. A text says so if a robot is now in another map."
                     (entry-text entry number) (one-line-text trouble))))))
 
 (defun perform-entries (entries number simulation)
-  "Repeat ENTRIES in SIMULATION. NUMBER is the number of the first entry."
   (loop for entry in entries
         for each from number
         do (perform-entry entry each simulation)))

@@ -16,8 +16,8 @@
 
 ;; A clock's thread must not rewind other runs either: it and their clocks might await each other.
 (defun run-paced-by-this-thread (simulation)
-  "If this is the thread of the clock of SIMULATION, return SIMULATION. If this is the thread of the
-clock of the current simulation, return the current simulation. Otherwise return NIL."
+  "Return SIMULATION if its clock runs in this thread. Otherwise return the current simulation if
+its clock runs in this thread, else NIL."
   (find-if (lambda (run) (and run (eq (current-thread) (simulation-thread run))))
            (list simulation *simulation*)))
 
@@ -48,7 +48,6 @@ clock of the current simulation, return the current simulation. Otherwise return
     (and past (past-forks past) (fork-record-tick (first (last (past-forks past)))))))
 
 (defun check-keeps-forks (simulation)
-  "Signal MISUSE if SIMULATION has no past to go back to."
   (unless (earliest-tick simulation)
     (reject-use "rewind: ~A keeps no forks to go back to. Keep forks from now on by ~
                  (keep-forks), or from the beginning of the run by (with-simulation (ROBOT ~
@@ -56,7 +55,6 @@ clock of the current simulation, return the current simulation. Otherwise return
                 (simulation-name simulation))))
 
 (defun check-rewind-distance (ticks simulation)
-  "Signal WRONG-ARGUMENT unless SIMULATION can be rewound by TICKS ticks."
   (let* ((first (earliest-tick simulation))
          (most (- (simulation-tick simulation) first)))
     (unless (<= ticks most)
@@ -154,7 +152,8 @@ it: the binding, the global value or both."
       (queue-message message (simulation-messages new)))))
 
 (defun take-over-state (new old from)
-  "Give NEW the variables, world and errors of OLD, which had reached the tick FROM."
+  "Record in NEW the rewind from the tick FROM. If OLD is current, give its variables their values
+in NEW. If its world is resident, make that of NEW resident. Move errors of OLD to NEW."
   (let ((current-resident-world-p (not (headless-p old)))
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
     (record-rewind from new)
@@ -168,7 +167,8 @@ it: the binding, the global value or both."
 
 (defun replace-owned-run (new old then)
   "Replace OLD, which this thread owns, by NEW; then call THEN. Continuations of OLD are called, as
-OLD is over. Non-local exits from continuations and interrupts of this thread do not stop this."
+OLD is over. Non-local exits from continuations and interrupts of this thread do not stop the
+replacement."
   (check-not-over old 'rewind)
   (let ((from (simulation-tick old)))
     ;; A thread waiting for custody gets it once NEW has replaced OLD.
@@ -187,7 +187,8 @@ OLD is over. Non-local exits from continuations and interrupts of this thread do
                      :real (eq :real (simulation-thinking new)))))
 
 (defun replace-run (new old)
-  "Replace OLD by NEW, live if OLD is live. Return NEW. If OLD is over, release NEW; signal MISUSE."
+  "Replace OLD by NEW, and run NEW live if OLD is live. Return NEW. If OLD is over, release NEW and
+signal MISUSE."
   (let* ((timeline (simulation-timeline old))
          (rate (simulation-rate old)) (paused-p (paused-p old))
          (live-p (claim-pacing timeline))
@@ -243,8 +244,8 @@ and changes since the last tick.
 - Messages are kept, and so are variables that programs have set themselves.
 - RUN-TICKS, RUN-UNTIL and CALL-IN-FORK use the successor of a fork that was rewound. The digest of
   such a fork remains that of its last state.
-Signals WRONG-ARGUMENT, with the largest possible number of ticks; MISUSE inside ticks and plans, in
-the thread of any clock, and if SIMULATION is over."
+Signals WRONG-ARGUMENT, which names the largest possible number of ticks. Signals MISUSE inside
+ticks and plans, in the thread of any clock, and if SIMULATION is over."
   (let ((simulation (resolve-simulation simulation 'rewind)))
     (check-argument rewind ticks (typep ticks 'unsigned-byte)
                     "a whole number of ticks, 0 or more")

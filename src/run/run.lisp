@@ -146,7 +146,7 @@ do not refer to each other, so all but the last can be garbage-collected."
 (defvar *simulations-lock* (make-lock "simulations"))
 
 (defun resident-message-queue ()
-  "Return the message queue of resident runs, *MESSAGE-QUEUE*; in a headless run the global value."
+  "Return the resident runs' message queue: *MESSAGE-QUEUE*, in a headless run its global value."
   (if (and *simulation* (headless-p *simulation*))
       (global-value '*message-queue*)
       *message-queue*))
@@ -224,7 +224,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
 
 (defun idle-p (&optional (simulation (current-simulation)))
   "True if nothing can happen in SIMULATION until a request is made. In a live simulation at the
-rate :FREE, kickers wait for a request, too: else millions of ticks would pass before a request."
+rate :FREE, kickers wait for a request, too; otherwise millions of ticks would pass before it."
   (let ((world (simulation-world simulation)))
     (and (or (and (eq :free (pace simulation)) (live-p simulation))
              (not (or (world-has-kickers-p world) (tracks-in-progress-p world))))

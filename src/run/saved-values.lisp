@@ -60,7 +60,7 @@ the first element and a space before each other element."
            start)))
 
 (defun object-contents (object fields)
-  "Return the contents of OBJECT, neither an array nor a cons, as a list for LOADER-VALUES."
+  "OBJECT is neither an array nor a cons. Return its contents as a list for LOADER-VALUES."
   (typecase object
     (dice (list (dice-state object)))
     (agenda (cons (agenda-tick object) (pending-events object)))
@@ -102,13 +102,13 @@ OBJECT is an array. Return what is left after this line, in the same form, or NI
   (mapcar (lambda (field) (symbol-name (kind-slot-name field))) fields))
 
 (defun batch-line (batch)
-  "Return the line with the count and shape of the objects in BATCH, which defines their numbers."
+  "Return the line that defines the numbers of the objects in BATCH: their count and shape."
   (destructuring-bind (kind . more) (batch-shape batch)
     (datum-text `(:new ,kind ,(length (batch-members batch)) ,@more
                        ,@(and (eq :object kind) (list (field-names (batch-fields batch))))))))
 
 (defun write-inventory-lines (inventory seal)
-  "Call the function SEAL with each line, a string, of the text of INVENTORY."
+  "Call the function SEAL with each line of the text of INVENTORY, a string."
   (loop for (nil . name) in (inventory-external-objects inventory)
         do (funcall seal (datum-text (cons :found name))))
   (let ((batches (batches-in-order inventory)))

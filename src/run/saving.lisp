@@ -31,20 +31,18 @@
       "Return the parts that an UNSAVABLE condition names, a list of strings.")
 
 (defun holds-function-p (request)
-  "True if REQUEST contains a function of the user's."
+  "True if REQUEST contains a user's function."
   (typecase request
     (scheduled t)
     (withdrawal (withdrawal-continuation request))))
 
 (defun waiting-requests (simulation)
-  "Return the requests that wait for the next tick of SIMULATION, in order."
   (reverse (timeline-inbox (simulation-timeline simulation))))
 
 (defun waiting-events (simulation)
   (pending-events (simulation-agenda simulation)))
 
 (defun unsavable-texts (simulation journal)
-  "Return a list of texts about the parts of SIMULATION and JOURNAL that cannot be saved."
   (append (loop for text in (unfinished-work-texts simulation)
                 collect (format nil "~A is under way" text))
           (loop for event in (waiting-events simulation)
@@ -118,7 +116,7 @@ each of its threads has its own."
            programs)))
 
 (defun write-saved-run (simulation journal programs out)
-  "Write SIMULATION and its JOURNAL, or NIL, to OUT. PROGRAMS is a value of PROGRAM-STATE-FOR-HEAD."
+  "Write SIMULATION and any JOURNAL of it to OUT. PROGRAMS is a value of PROGRAM-STATE-FOR-HEAD."
   (let* ((requests (waiting-requests simulation))
          (inventory (take-inventory simulation requests))
          (sum 0))

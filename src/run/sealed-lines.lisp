@@ -53,7 +53,7 @@
 ;;; Reading.
 
 (defun read-limited-line (in)
-  "Return the next line of IN, or its beginning if longer than +LONGEST-LINE+, or NIL at the end."
+  "Return the next line of IN, cut off after +LONGEST-LINE+ characters, or NIL at the end of IN."
   (let* ((last nil)
          (line (with-output-to-string (out)
                  (loop repeat +longest-line+
@@ -71,7 +71,6 @@
     (or (string= "" text) (char= #\; (char text 0)))))
 
 (defun line-checksum (line start)
-  "Return the check sum that begins in LINE at START, or NIL."
   (and (<= 0 start)
        (string= " ;" line :start2 start :end2 (+ 2 start))
        (parse-integer line :start (+ 2 start) :radix 16 :junk-allowed t)))

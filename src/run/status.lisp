@@ -8,7 +8,7 @@
 ;;; strings, as they print. Property lists can get more entries in the future.
 
 (defun view-without-effect (camera)
-  "Return the current view of CAMERA, but restore the dice and the last view (reading 201)."
+  "Return the current view of CAMERA, then restore the dice and the last view (reading 201)."
   (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
          (state (dice-state dice))
          (last-view (camera-last-view camera))

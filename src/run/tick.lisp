@@ -42,8 +42,8 @@ SIMULATION keeps a journal or forks."
     (record-settings simulation)))
 
 (defun set-parameter (name value)
-  "Set the parameter NAME to VALUE. A replay calls this for an entry of the repeated journal; the
-change is recorded at the same point of the new journal."
+  "Set the parameter NAME to VALUE. A replay calls this function for a journal entry; the change is
+recorded at the same point of the new journal."
   (setf (parameter-value name) value)
   (record-settings *simulation*))
 
@@ -83,7 +83,6 @@ change is recorded at the same point of the new journal."
 
 (declaim (inline extend-journal))
 (defun extend-journal (simulation)
-  "If SIMULATION keeps a journal that is not full, extend it to the current tick."
   (let ((journal (simulation-journal simulation)))
     (when (and journal (not (journal-full-p journal)))
       (setf (journal-end journal) (simulation-tick simulation)))))

@@ -70,7 +70,7 @@
   "The names of the attributes in the manual's table 3.3, which every thing has.")
 
 (defun built-in-attribute-p (attribute)
-  "True if ATTRIBUTE is an attribute of the manual, which every thing has, at least by default."
+  "True if ATTRIBUTE is one of the manual's attributes. Every thing has these, at least by default."
   (member (attribute-name attribute) *built-in-attributes* :test #'eq))
 
 (defun check-kind-of-built-in (definition name domain)
@@ -120,7 +120,7 @@ discrete or numeric."
     name))
 
 (defun warn-of-attribute-options (definition domain options)
-  "Warn if OPTIONS of DOMAIN are all for the other kind of attribute, numeric or discrete."
+  "Warn if OPTIONS has :base or :max-mult for a list DOMAIN, or :success without :base for NUMERIC."
   (flet ((given-p (option) (nth-value 2 (get-properties options (list option)))))
     (let ((strange (if (consp domain)
                        (find-if #'given-p '(:base :max-mult))

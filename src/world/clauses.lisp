@@ -60,9 +60,9 @@ MALFORMED-DEFINITION about DEFINITION, with the text EXPECTED."
   "A list of positions, the path from the current definition to the current clause.")
 
 (defun call-with-clause (function clause path)
-  "Call FUNCTION with CLAUSE, at PATH of the current definition. Restarts leave the clause out and
-return NIL, read the clause again from its file, or use a typed clause. A typed definition replaces
-the whole current definition."
+  "Call FUNCTION with CLAUSE, which is at PATH in the current definition. Restarts leave the clause
+out and return NIL, read the clause again from its file, or use a typed clause. A typed definition
+replaces the whole current definition."
   (restart-case (let ((*clause-path* path)) (funcall function clause))
     (skip-clause ()
       :report (lambda (stream) (format stream "Leave the clause ~S out." clause))

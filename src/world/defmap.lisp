@@ -113,7 +113,7 @@ MALFORMED-DEFINITION for invalid contents."
 ;;; about when a file is compiled.
 
 (defun find-places (map path)
-  "Find the places of MAP again. If no place type failed, and PATH is a file, cache MAP there."
+  "Find the places of MAP again. If no place type failed, cache MAP in the file PATH, if not NIL."
   (let ((whole (nth-value 1 (classify-places map))))
     (when (and path whole) (write-cache map path (cache-key map)))
     map))

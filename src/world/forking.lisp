@@ -11,7 +11,7 @@
 
 (declaim (inline find-copy-by-rank))
 (defun find-copy-by-rank (thing old new)
-  "Return the copy in the vector NEW of THING in the vector OLD; NIL if THING is not in OLD."
+  "NEW has the copies of the things in the vector OLD. Return the copy of THING; NIL if not in OLD."
   (declare (type thing thing) (type simple-vector old new))
   (let ((rank (thing-rank thing)))
     (and (< rank (length old))
@@ -38,8 +38,8 @@
 ;;; Kickers.
 
 (defun attachment-copier (copier)
-  "Return a function with two arguments, an attachment and a copied thing. It copies the attachment
-for this thing, and puts the copy into the copied group."
+  "Return a function with two arguments, an attachment and a copied thing. The function copies the
+attachment for this thing, and puts the copy into the copied group."
   (let ((kicker nil) (new-kicker nil) (group nil) (new-group nil))
     ;; Most have the kicker and the group of the one before.
     (flet ((kicker-for (old)

@@ -93,7 +93,6 @@
       (fill row nil :start (* 3 last) :end (* 3 (1+ last))))))
 
 (defun regroup-kickers (world)
-  "Rebuild the groups of WORLD, after kickers have been redefined."
   (setf (world-kicker-groups world) '()
         (world-kicker-generation world) *kicker-generation*)
   (do-things (thing world)
@@ -105,7 +104,7 @@
 
 (declaim (inline test-holds-p))
 (defun test-holds-p (kicker test thing)
-  "Return the value of TEST, the test of KICKER, for THING, and record the outcome in KICKER."
+  "Call TEST, the test of KICKER, with THING. Record the result in KICKER and return it."
   (cond ((funcall (the function test) thing)
          (or (eq t (kicker-test-outcome kicker)) (setf (kicker-test-outcome kicker) t)))
         ;; Another thread may record true at this moment.
@@ -119,7 +118,6 @@
       (funcall (the function (kicker-body kicker)) thing))))
 
 (defun rerun-member (origin)
-  "Run the attachment in ORIGIN once more, after an error."
   (let ((attachment (origin-attachment origin)))
     (setf self attachment)
     (run-member (attachment-kicker attachment) (attachment-thing attachment))))
@@ -127,11 +125,11 @@
 ;; Distant memory is read ahead. In a large world a move then takes 420 ns instead of 750. Kickers
 ;; that move nothing would not benefit, and would pay for it.
 (defconstant +large-group-size+ 5000
-  "The number of members from which a group needs more memory than a processor caches.")
+  "A group with at least so many members needs more memory than a processor caches.")
 
 (defun read-group-ahead (group end dice)
-  "Read the memory of the things in GROUP whose trials succeed next, before the index END, into the
-cache. Return the index of the first success for which nothing was read."
+  "Read the memory of things in GROUP into the cache: those whose trials succeed next, before the
+index END. Return the index of the first success for which nothing was read."
   (declare #.*hot* (type group group) (type (unsigned-byte 50) end) (type dice dice))
   (let* ((row (group-row group))
          (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
@@ -203,7 +201,7 @@ it is retried. In a large group, memory is read ahead if the first member to run
 
 (declaim (inline skip-group))
 (defun skip-group (group)
-  "If no trial in GROUP succeeds in this tick, as in most ticks, let the tick pass and return true."
+  "If no trial in GROUP succeeds in this tick (the usual case), count this tick and return true."
   (declare (type group group))
   (let ((left (- (group-skip group) (group-count group))))
     (when (and (>= left 0)

@@ -120,10 +120,10 @@ are functions of a thing; TEST-ATTRIBUTES lists the attributes that TEST reads. 
 (public defkicker)
 (define-user-macro defkicker (&whole form name lambda-list &optional options
                      &body body &environment environment)
-  "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) on
-any tick on which the form :test (default true) holds. LAMBDA-LIST is a list of one variable, bound
-to the thing in BODY and :test. NAME becomes a special variable bound to the kicker, unless NAME is
-a symbol of Common Lisp, such as OPEN, or of the simulator, or already has a value: refer to such
+  "Define the kicker NAME (manual 5.3.1), whose BODY runs with probability :prob (default 1) in each
+tick in which the form :test (default true) is true. LAMBDA-LIST is a list of one variable, bound to
+the thing in BODY and :test. NAME becomes a special variable bound to the kicker, unless NAME is a
+symbol of Common Lisp, such as OPEN, or of the simulator, or already has a value: refer to such
 kickers by name. A redefinition affects things that have the kicker. Random numbers depend on the
 seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-between 0 1 (world-dice
 *world* :user)). Signals MALFORMED-DEFINITION. Return the name."
@@ -239,7 +239,7 @@ once in the file of WORLD's map, or the kicker is from another file."
         (code-refers-to-p name (symbol-package name)))))
 
 (defun warn-of-unused-kicker (entry world)
-  "Warn if the kicker of ENTRY is new, and no program, thing or map seems to use it."
+  "Warn if the kicker of ENTRY is new, and no program, thing or map seems to use the kicker."
   (let ((kicker (entry-object entry)))
     (unless (or (shiftf (kicker-checked-p kicker) t)
                 (kicker-maybe-used-p entry world)

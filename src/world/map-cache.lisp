@@ -26,7 +26,7 @@
                                          (place-type-rules type)))))))
 
 (defun words-checksum (words)
-  "Return the check sum of all WORDS except the first and the header's last, the check sum itself."
+  "Return the check sum of WORDS without the first word and the header's last word, which holds it."
   (declare (type words words))
   (let ((sum 1))
     (declare (type (unsigned-byte 64) sum))
@@ -72,7 +72,7 @@
 ;;; Reading.
 
 (defun read-words (path most)
-  "Return a vector of the words of the file PATH: empty if over MOST words; NIL without a file."
+  "Return a vector of the words of the file PATH, empty if they exceed MOST, or NIL without a file."
   (with-open-file (in path :element-type '(unsigned-byte 64) :if-does-not-exist nil)
     (when in
       (let ((words (make-array (if (<= (file-length in) most) (file-length in) 0)

@@ -130,9 +130,9 @@ and, with a warning in a compiled file, for an invalid clause."
 (addition define-map-clause)
 (define-user-macro define-map-clause (&whole form name lambda-list &optional usage
                                       &body options &environment environment)
-  "Define clauses (NAME argument...) of DEFMAP. LAMBDA-LIST is a variable for the map, whose name
-and size are known, and a macro lambda list for the arguments. The string USAGE shows a clause, and
-is quoted in error messages. Options are forms:
+  "Define clauses (NAME argument...) of DEFMAP. LAMBDA-LIST is a variable for the map, of which only
+the name and size are known, and a macro lambda list for the arguments. The string USAGE shows a
+clause, and is quoted in error messages. Options are forms:
   :clauses form -- the list of clauses, such as walls and things, that the clause expands to
   :check form -- true if the arguments are valid; by default the lambda list alone decides
 Existing maps do not change. Return the name. Signals MALFORMED-DEFINITION."

@@ -90,8 +90,8 @@ the first use" :writable :export))
 (define-registry map "map" :object-p map-p :by-symbol t)
 
 (defun find-map-argument (operator map)
-  "Return MAP, the argument MAP of OPERATOR, if it is a map, or the map with the name MAP. Signals
-WRONG-ARGUMENT and UNKNOWN-NAME."
+  "Return the map that MAP means: a map or the name of one, given as the argument MAP of OPERATOR.
+Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (unless (and map (typep map '(or map symbol string)))
     (reject-argument operator 'map map "a map, or the name of one"))
   (find-map map))
@@ -109,15 +109,15 @@ map; NEW is NIL if OLD was undefined. The layer above ends the runs of OLD.")
   map)
 
 (defun map-reference-form (form environment)
-  "Return a form that returns the map that FORM denotes in ENVIRONMENT, or its name. A symbol whose
-value is no map, such as ROOM, is the name of a map."
+  "Return a form whose value is the map that FORM denotes in ENVIRONMENT, or the map's name. A
+symbol whose value is no map, such as ROOM, is the name of a map."
   (cond ((or (null form) (not (symbolp form))) form)
         ((local-variable-p form environment) form)
         ((known-variable-p form environment) `(variable-map-or-name ',form))
         (t `',form)))
 
 (defun variable-map-or-name (name)
-  "Return the value of the variable NAME if it can be a map or its name; else NAME, a map's name."
+  "Return the value of the variable NAME if it is, or may be, a map or the name of one; else NAME."
   (let ((value (and (boundp name) (symbol-value name))))
     (if (or (map-p value)
             (stringp value)
@@ -140,7 +140,7 @@ value is no map, such as ROOM, is the name of a map."
          (the cell-index (+ x (the cell-index (* y width)))))))
 
 (defun point-index (map x y)
-  "Return the index of MAP's cell that holds (X, Y), double-floats; NIL outside MAP (reading 51)."
+  "Return the index of MAP's cell that holds (X, Y), or NIL outside MAP; floats only (reading 51)."
   (declare (type double-float x y))
   (let ((width (map-width map)))
     (and (<= 0d0 x) (<= 0d0 y) (< x (double width)) (< y (double (map-height map)))
@@ -157,7 +157,7 @@ value is no map, such as ROOM, is the name of a map."
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
 
 (defun check-point (operator x y)
-  "Signal WRONG-ARGUMENT for OPERATOR unless X and Y are coordinates, however far away."
+  "Signal WRONG-ARGUMENT for OPERATOR unless X and Y are finite numbers."
   (flet ((check (name value)
            (unless (finite-p value)
              (reject-argument operator name value "a real number, from -1.7e308 to 1.7e308"))))
@@ -259,8 +259,8 @@ CELL if BACK, else to the upper border."
 grid of WIDTH by HEIGHT that contains (X,Y). The arguments of VISIT are the cell's index, the
 distance at which the line enters the cell, and whether the line comes from another column. Stop
 when VISIT returns true, at the edge of the grid, or after REACH columns or rows; return the
-distance of this point. At a corner the line enters the cell in the next row first or, if the
-constant COLUMN-FIRST is true, the cell in the next column."
+distance at which the walk stops. At a corner the line enters the cell in the next row first or, if
+the constant COLUMN-FIRST is true, the cell in the next column."
   (declare (type function visit) (type grid-size width height reach)
            (type double-float x y dx dy))
   (let* ((cell-x (cell-number x)) (cell-y (cell-number y))

@@ -63,8 +63,8 @@ is a place that faces DIRECTION."
     (values mask value)))
 
 (defun rules-table (rules)
-  "Return a vector. At each neighbourhood code it has the number, from 1, of the first of RULES that
-fits, or 0. All match forms of RULES must be small (SMALL-MATCH-FORM-P)."
+  "Return a vector with an element for each neighbourhood code: the number, from 1, of the first
+rule in RULES that fits the code, or 0. No match form in RULES is larger than 3 by 3."
   (let ((table (make-octets 512)))
     (loop for rule in (reverse rules) for number downfrom (length rules)
           do (multiple-value-bind (mask value) (match-form-bits (rule-form rule))
@@ -233,10 +233,10 @@ its basic direction and the opposite. Errors in the form are queued as messages 
   :before name -- an addition: where a cell fits two types, this type wins over the type NAME, or
     over all others if NAME is T; without :before, a type that was defined earlier wins
   :documentation text -- an addition: what the place type is
-After its direction a matcher may have integers dx and dy, the offset of the place, as a checker
-does; this is an addition, too. The code of :checker and :directions is tried once on a small
-separate map. Call REBUILD-MAP to find places of the type in maps built earlier. Signals
-MALFORMED-DEFINITION. Return the name."
+A matcher may also have two integers dx and dy after the direction, the offset of the place (an
+addition). The code of :checker and :directions is tried once on a small separate map. Call
+REBUILD-MAP to find places of the type in maps built earlier. Signals MALFORMED-DEFINITION. Return
+the name."
   (expand-definition form environment
                      (lambda () (place-type-forms name lambda-list options))))
 
@@ -250,8 +250,8 @@ MALFORMED-DEFINITION. Return the name."
 
 (defun define-place-type (name &key (confusion 0) invisible rules checker directions graphics
                                  before (key 0))
-  "Define the place type NAME. DEF-PLACE-TYPE expands to a call of this. CHECKER and DIRECTIONS are
-functions of a cell. KEY is a digest of the definition, for a map's cache key. Return NAME."
+  "Define the place type NAME for DEF-PLACE-TYPE. CHECKER and DIRECTIONS are functions of a cell.
+KEY is a digest of the definition, for a map's cache key. Return NAME."
   (let* ((definition (definition-title "def-place-type" name))
          (old (definition-to-replace name *place-types*))
          (next (type-to-precede definition before))

@@ -10,7 +10,8 @@
 
 (declaim (inline column-code))
 (defun column-code (flags x y width height)
-  "Return three bits that say whether column X has a wall in the row above Y, in Y, and below."
+  "Return three bits: whether column X has a wall in the row above Y, in row Y, and in the next
+row."
   (declare (type octets flags) (type (signed-byte 20) x y width height))
   (flet ((bit-at (y)
            (declare (type (signed-byte 20) y))
@@ -133,7 +134,7 @@ mistakes in the definition of TYPE."
       (call-place-type-code #'classify cell type :checker))))
 
 (defun classify-by-type (map type number codes)
-  "Make each cell of MAP that fits and is no place yet a place of TYPE, which has NUMBER."
+  "Make places of TYPE, the type with NUMBER, of the cells of MAP that fit and are not places yet."
   (cond ((place-type-checker type) (classify-by-checker map type number))
         ((place-type-table type) (classify-by-table map type number codes))
         (t (classify-by-forms map type number))))
@@ -261,7 +262,7 @@ and true if no type was left out (reading 70)."
 ;;; Cells of earlier types.
 
 (defun codes-of-rule (rule)
-  "Return the codes of all neighbourhoods of a free cell that fit RULE, whose match form is small."
+  "Return the codes of a free cell's neighbourhoods that fit RULE, which is at most 3 by 3."
   (multiple-value-bind (mask value) (match-form-bits (rule-form rule))
     (loop for code below 512
           when (and (= value (logand code mask)) (not (logbitp 4 code))) collect code)))
@@ -276,7 +277,7 @@ and true if no type was left out (reading 70)."
            types))
 
 (defun covering-types (rules types)
-  "If TYPES classify all cells that fit RULES, return those TYPES that classify some; else NIL."
+  "If each cell that fits RULES is a place of some type in TYPES, return these types; else NIL."
   (let ((takers '()))
     (dolist (rule rules takers)
       (unless (= 0 (rule-dx rule) (rule-dy rule)) (return '()))
@@ -284,7 +285,7 @@ and true if no type was left out (reading 70)."
         (pushnew (or (first-type-for-code code types) (return-from covering-types '())) takers)))))
 
 (defun warn-if-covered (definition type)
-  "Warn if types defined before TYPE classify all cells that fit TYPE."
+  "Warn if each cell that fits TYPE is a place of a type defined before TYPE."
   (let* ((types (registry-objects *place-types*))
          (rules (remove-if #'rule-needs-wall-p (place-type-rules type)))
          (takers (and (place-type-table type)
@@ -297,7 +298,6 @@ and true if no type was left out (reading 70)."
                                                   types))))))
 
 (defun warn-of-useless-rules (definition type)
-  "Warn of rules of TYPE, a registered place type, that can never make a place."
   (mapc (lambda (rule) (warn-of-rule-needing-wall definition rule))
         (remove-if-not #'rule-needs-wall-p (place-type-rules type)))
   (warn-if-covered definition type))

@@ -15,7 +15,7 @@
           (if (thing-obsview-p thing) +obsview+ 0)))
 
 (defun refresh-cell-flags (world index)
-  "Set the flags of the cell INDEX of WORLD by the map and the things on its floor."
+  "Set the flags of the cell INDEX of WORLD from the map and the things on the cell's floor."
   (declare (type world world) (type cell-index index))
   (let ((flags (world-flags world)))
     (setf (aref flags index) (logior (logand +wall+ (aref flags index))
@@ -148,10 +148,10 @@ Return the world of HOLDER."
 
 (addition move-thing)
 (defun move-thing (thing location &optional (y nil y-p))
-  "Move THING to LOCATION: a container, hand or storage bin, or a position, either a list (x y)
-or, as two arguments, its coordinates in metres. Walls, lids and capacities do not
-matter, but a position inside a wall queues a warning. Signals WRONG-ARGUMENT outside the map,
-MISUSE for prototypes, destroyed things, and a container put into itself. Return THING."
+  "Move THING to LOCATION: a container, hand or storage bin, or a position in metres. A position is
+a list (x y), or two arguments. Walls, lids and capacities do not matter, but a position inside a
+wall queues a warning. Signals WRONG-ARGUMENT outside the map, MISUSE for prototypes, destroyed
+things, and a container put into itself. Return THING."
   (check-movable 'move-thing thing)
   (let ((position (cond (y-p (list location y))
                         ((number-pair-p location) location))))
@@ -289,7 +289,7 @@ thread may not change the world."
       :otherwise))
 
 (deftype common-number ()
-  "A number that a caller of KICK-THING converts inline. Ratios may be too large."
+  "A number that inlined code converts to a double-float. Ratios may be too large for one."
   '(or double-float single-float fixnum))
 
 ;; Inline, so that floats computed by a kicker are not boxed.

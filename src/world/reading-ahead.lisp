@@ -22,8 +22,8 @@
       0))
 
 (defun read-ahead (batch count world)
-  "Read the memory for moves of the first COUNT elements of BATCH, things or NIL, into the cache.
-Overwrite these elements. Return a meaningless number, so that the compiler keeps the reads."
+  "Read the memory that moves of the first COUNT elements of BATCH, things or NIL, need. Overwrite
+these elements. Return a meaningless number, so that the compiler keeps the reads."
   (declare #.*hot* (type batch batch) (type batch-count count) (type world world))
   (let* ((stock (world-stock world)) (firsts (stock-firsts stock)) (nexts (stock-nexts stock))
          (flags (world-flags world)) (sum 0))
@@ -92,7 +92,7 @@ INDEX. Return the index of the first success after these gaps."
 
 (declaim (inline draw-gap-from-outlook))
 (defun draw-gap-from-outlook (outlook scale dice)
-  "Return the value of DRAW-GAP for SCALE and DICE, taken from OUTLOOK (or NIL) if drawn ahead."
+  "Return the value of DRAW-GAP for SCALE and DICE, from OUTLOOK if it is not NIL and has this gap."
   (let ((next (if outlook (outlook-next outlook) 0)))
     (cond ((and outlook
                 (< next (outlook-count outlook))

@@ -52,7 +52,7 @@ DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals WRONG-ARGU
         (warning-set thing " is made without the kicker " kicker ", which is no longer defined."))))
 
 (defun follow-recipe (recipe world)
-  "Return a new thing from RECIPE without a location, a prototype if WORLD is NIL (reading 63)."
+  "Make a thing by RECIPE, without a location. If WORLD is NIL, make a prototype (reading 63)."
   (let* ((contents (loop for inside in (recipe-contents recipe)
                          collect (follow-recipe inside world)))
          (thing (%make-thing (recipe-name recipe) (if world (world-next-serial world) 0) world)))
@@ -68,7 +68,7 @@ DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals WRONG-ARGU
     thing))
 
 (defun find-recipe-if (test recipes)
-  "Return the first recipe in RECIPES, or their contents, for which TEST is true, and TEST's value."
+  "Return the first recipe in RECIPES, or in their contents, that passes TEST, and TEST's value."
   (dolist (recipe recipes)
     (let ((value (funcall test recipe)))
       (when value (return (values recipe value))))
@@ -81,7 +81,6 @@ DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals WRONG-ARGU
                   (map-things map)))
 
 (defun attribute-names (recipes)
-  "Return the names, keywords, of all attributes of things made by RECIPES."
   (remove-duplicates
    (loop for recipe in recipes
          append (mapcar #'first (recipe-attributes recipe))
@@ -145,11 +144,11 @@ robots at their starts. The timeline and the move watchers stay. Return WORLD."
 (addition make-new-thing)
 (defun make-new-thing (name location descriptor &key prototype contents kickers)
   "Make and return a thing NAME, a symbol, with the attributes of DESCRIPTOR, as NEW-THING does.
-LOCATION is NIL for a prototype, a container, hand or storage bin, or a list (:with thing) or (map x
-y), in metres; the map may also be a name or a world. PROTOTYPE is a thing whose attributes and
-contents are copied first. CONTENTS, an addition, is a list of recipes made by THING-RECIPE.
-KICKERS, an addition, is a list of kickers or their names. Signals WRONG-ARGUMENT and UNKNOWN-NAME,
-and MISUSE for a hand that holds something."
+LOCATION is a container, hand or storage bin, a list (:with thing) or (map x y), in metres, or NIL
+to make a prototype. In the list, the map may also be a name or a world. PROTOTYPE is a thing whose
+attributes and contents are copied first. CONTENTS, an addition, is a list of recipes made by
+THING-RECIPE. KICKERS, an addition, is a list of kickers or their names. Signals WRONG-ARGUMENT and
+UNKNOWN-NAME, and MISUSE for a hand that holds something."
   (let ((recipe (recipe-from-descriptor 'new-thing name descriptor :prototype prototype
                                                                    :contents contents :kickers
                                                                    kickers)))
@@ -200,7 +199,7 @@ of a map, or a symbol that names no function."
 (define-user-macro new-thing (name location descriptor &key prototype &environment environment)
   "Make and return a thing NAME with the attributes of DESCRIPTOR, both unevaluated (manual 5.3).
 LOCATION is one of
-  a form whose value is a container, hand or storage bin, or NIL for a prototype;
+  a form whose value is a container, hand or storage bin, or NIL to make a prototype;
   (:with form) -- at the location of another thing;
   (map x y) -- in a map, at coordinates in metres; MAP, X and Y are forms, but a symbol
     MAP that is no variable is the name of a map.

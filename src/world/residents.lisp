@@ -83,8 +83,8 @@ the map had at first is no misspelling."
                  (format nil "No thing here is called ~(~A~). Did you mean ~(~A~)?" name like)))))
 
 (defun missed-name-text ()
-  "Return a text with the last new name that FIND-THING did not find in the current world, and with
-a similar name if there is one; or NIL."
+  "Return a text about the last name that FIND-THING looked for in vain in the current world, with a
+similar name if there is one. Return NIL if there was no such name."
   (let* ((noted (and *world* (world-noted-names *world*)))
          (name (second (find-if (lambda (key) (typep key '(cons (eql :thing)))) noted))))
     (and name (format nil "nothing here is called ~(~A~)~@[; did you mean ~(~A~)?~]"

@@ -172,7 +172,7 @@ circular")
              "the world's due kickers are not kickers of its things"))
 
 (defun check-world (world)
-  "Signal an error, usually CONTRADICTION, unless WORLD, read from a file, is in a reachable state."
+  "Signal an error, usually CONTRADICTION, if WORLD, read from a file, is in an impossible state."
   (must-hold (and (= (length (world-dice-set world)) (length +dice-purposes+))
                   (every (lambda (dice) (typep dice 'dice)) (world-dice-set world)))
              "the world's dice are invalid")
@@ -183,6 +183,6 @@ circular")
   (check-kickers world))
 
 (defun world-invariant-violations (world)
-  "Return a list of the error message with which CHECK-WORLD rejects WORLD, or NIL if consistent."
+  "Return NIL if WORLD is consistent, else a list of one string, the error message of CHECK-WORLD."
   (handler-case (progn (check-world world) '())
     (error (condition) (list (princ-to-string condition)))))

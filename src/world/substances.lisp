@@ -27,7 +27,7 @@
                    "a number as the parameter of the substance, such as 60, from -1e15 to 1e15"))
 
   (defun check-parameter-form (name form)
-    "Signal MALFORMED-DEFINITION if FORM, for the parameter of NAME, cannot have a number as value."
+    "Signal MALFORMED-DEFINITION if FORM, given as the parameter of NAME, cannot return a number."
     (when (and (atom form)
                (or (not (symbolp form)) (null form) (keywordp form))
                (not (bounded-number-p form)))
@@ -42,8 +42,8 @@
 (addition defsubstance)
 (define-user-macro defsubstance (&whole form name &optional parameter documentation
                                  &environment environment)
-  "Define the type of substance NAME, a symbol: cameras see things of :substance NAME as PARAMETER,
-a number. The string DOCUMENTATION describes it. An addition to manual 2.1 and 3.3. Return NAME."
+  "Define the substance NAME, a symbol: cameras see things of :substance NAME as PARAMETER, a
+number. DOCUMENTATION is a string. An addition to manual 2.1 and 3.3. Return NAME."
   (expand-definition form environment
                      (lambda ()
                        (check-name "defsubstance" name "substance")
@@ -67,13 +67,13 @@ a number. The string DOCUMENTATION describes it. An addition to manual 2.1 and 3
            (first value) (symbolp (first value)) (bounded-number-p (second value)))))
 
 (defun substance-value-type (value)
-  "Return the type, a symbol, that VALUE of a :substance attribute names; NIL if VALUE names none."
+  "Return the substance that VALUE of a :substance attribute names, a symbol, or NIL."
   (cond ((realp value) nil)
         ((symbolp value) value)
         (t (first value))))
 
 (defun substance-value-parameter (value)
-  "Return the parameter, a double-float, of VALUE of a :substance attribute; 0 if VALUE is NIL."
+  "Return the parameter of VALUE, a :substance attribute, as a double-float; 0 if VALUE is NIL."
   (cond ((realp value) (double value))
         ((null value) 0d0)
         ((symbolp value) (substance-parameter value))

@@ -17,12 +17,12 @@
             do (return-from undeclared-name-like other))))
 
 (defun similar-attribute-name (key world)
-  "The undeclared KEY may be a misspelling. Return the similar name of a declared attribute, or of
-an attribute of a thing of WORLD; or NIL."
+  "The undeclared KEY may be a misspelling. Return a similar name of an attribute that is declared
+or that a thing in WORLD has; or NIL."
   (ensure-gethash key *likenesses* (or (declared-name-like key) (undeclared-name-like key world))))
 
 (defun warn-of-misspelling (operator thing key &key read)
-  "Warn once if KEY, an argument of OPERATOR with THING, is undeclared, no thing has it, and it
+  "OPERATOR was called with THING and KEY. Warn once if KEY is undeclared, no thing has it, and it
 resembles a declared attribute or, if READ is true, an attribute of some thing."
   (let ((world (thing-world thing)))
     (when (and world (not (declared-attribute key)))
@@ -56,7 +56,6 @@ a declared attribute or of an attribute of some thing."
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
 
 (defun update-physics-slots (thing)
-  "Update the cached slots of THING from its attributes."
   (flet ((number-of (key)
            (let ((value (get-attribute thing key))) (if (realp value) (double value) 0d0)))
          (truth-of (key) (and (get-attribute thing key) t)))
@@ -150,7 +149,7 @@ change (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
   '((:prototype "(obj (~A :prototype box) ...)" "(new-thing ~A place (...) :prototype box)")
     (:kickers "(obj (~A :kickers (sway)) ...)" "(make-new-thing '~A place '(...) :kickers '(sway))")
     (:contents "(obj ~A (x y) (...) thing...)" "(make-new-thing '~A place '(...) :contents list)"))
-  "The options of things, not attributes: each entry is an option, and its form in maps and runs.")
+  "The options for making things. Each entry is an option, and its use in maps and in runs.")
 
 (defun option-named (name)
   "Return the entry of *OPTIONS-OF-THINGS* that NAME equals or resembles, or NIL."
@@ -167,11 +166,11 @@ attribute LIKE, and (name NIL) for the name of an option."
           collect (list name like)))
 
 (defun option-of-things-p (name)
-  "True if NAME, used as an attribute, is an option of things and no declared attribute."
+  "True if NAME, used as an attribute, is an option for making things and not a declared attribute."
   (and (option-named name) (not (declared-attribute (attribute-key name)))))
 
 (defun misspelling-text (thing-name slip &optional map-p)
-  "Return a text on which attribute of the thing is probably a mistake, and what to write instead."
+  "Return a text that says which attribute is probably a mistake, and what to write instead."
   (destructuring-bind (name like &aux (option (option-named name))) slip
     (if like
         (format nil "~(~A~) has ~(~S~), which is not declared; did you mean ~(~S~)?"

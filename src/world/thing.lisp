@@ -145,8 +145,8 @@ the sizes of the things directly in it (a double-float, at least 0). Signals WRO
              (reject (argument-type-text 'amount)))))))
 
 (defun warn-of-unknown-substance (value)
-  "Warn if VALUE, the value of a :substance attribute, names an unknown substance. Warn about the
-current definition or, without one, by a message."
+  "Warn if VALUE, the value of a :substance attribute, names an unknown substance. The warning is
+about the current definition or, without one, is a message."
   (let ((type (substance-value-type value)))
     (when (and type (null (find-substance type nil)))
       (let ((text (format nil "No substance is called ~(~A~): its parameter counts as 0; see ~
@@ -175,7 +175,7 @@ current definition or, without one, by a message."
 
 (addition thing-position)
 (defun thing-position (thing)
-  "Return two values, the coordinates of THING or its outermost holder in metres, NIL if nowhere."
+  "Return two values: the coordinates of THING or its outermost holder in metres, or NIL and NIL."
   (let* ((outermost (thing-outermost thing)) (location (thing-location outermost)))
     (case location
       (:floor (values (thing-x outermost) (thing-y outermost)))

@@ -77,7 +77,7 @@ at OPPOSITE, and at the last corner (readings 55, 56)."
 ;;; The clauses.
 
 (defun valid-material-p (type parameters counts)
-  "True if TYPE can be a substance, and PARAMETERS are numbers, whose count is in the list COUNTS."
+  "True if TYPE can be a substance, and PARAMETERS are numbers. COUNTS lists how many are allowed."
   (and type (symbolp type) (member (length parameters) counts)
        (every #'bounded-number-p parameters)))
 
@@ -139,7 +139,7 @@ at OPPOSITE, and at the last corner (readings 55, 56)."
                         (map-greatest-parameter map) greatest))))
 
 (defun record-wall-facts (map)
-  "Record the range of MAP's drawn wall parameters, and whether walls enclose MAP. Return MAP."
+  "Record the range of the parameters of MAP's walls, and whether walls enclose MAP. Return MAP."
   (record-parameter-range map)
   (let ((right (1- (map-width map))) (bottom (1- (map-height map))))
     (setf (map-enclosed map)

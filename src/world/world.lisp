@@ -170,8 +170,8 @@ the change as OPERATOR, a symbol, with the list ARGUMENTS.")
 
 (defmacro changing ((world operator &rest arguments) &body body)
   "Run BODY, which changes WORLD, in the thread and at the time in which changes are allowed. WORLD
-is NIL for prototypes. BODY does what OPERATOR, an unevaluated symbol, does with ARGUMENTS, which
-the journal records. Inside ticks, nothing is consed."
+is NIL for prototypes. The journal records the symbol OPERATOR, unevaluated, and ARGUMENTS: a call
+of OPERATOR with them does the same as BODY. Conses nothing inside ticks."
   (once-only (world)
     `(flet ((change-it () ,@body))
        (if (changing-thread-p ,world)
@@ -218,7 +218,7 @@ Return true if the warning was queued."
     t))
 
 (defun warn-of-angle-in-degrees (operator world angle)
-  "Warn once for OPERATOR, a symbol or string, in WORLD if ANGLE, in radians, may be in degrees."
+  "Warn once for OPERATOR, a symbol or string, in WORLD if ANGLE may be in degrees, not radians."
   (when (perhaps-degrees-p angle)
     (warn-once (list :angle operator) world
                (format nil "~(~A~): ~A" operator (degrees-advice angle)))))

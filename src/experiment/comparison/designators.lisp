@@ -223,8 +223,8 @@ level base). Else return NIL."
          (level-pair-samples results level-pair)))
 
 (defun distinguish-levels-from-numbers (results first second)
-  "Return FIRST and SECOND, which designate conditions; but as texts if both are integers that can
-only be levels of one factor. Signals MISUSE if they could also be numbers of conditions."
+  "Integers can mean levels or numbers of conditions. If FIRST and SECOND must mean levels of one
+factor, return their texts, else return both unchanged. Signals MISUSE if both meanings fit."
   (let ((level-pair (level-pair-of-integers results first second)))
     (cond ((or (null level-pair) (same-samples-p results first second level-pair))
            (values first second))
