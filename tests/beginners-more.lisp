@@ -122,7 +122,7 @@
                           (command:camera-track (robot:robot-camera rover 0) 'ball))
                         "a designator: cameras' searches pass designators"
                         "(camera-get-object-designator"))
-  (is-true (complains-p '(world:get-attribute 'ball :color) "as (find-thing 'ball) returns"))
+  (is-true (complains-p '(world:get-attribute 'ball :color) "the value of (find-thing 'ball)"))
   (is-true (complains-p '(world:set-attribute 3 :color 'red) "(find-thing 'NAME)")))
 
 (test run-plan.in-a-continuation-names-begin-plan

@@ -351,7 +351,7 @@ DESCRIPTOR-OF returns of its number, as text."
 
 (test map-clauses.are-defined-or-refused
   (loop for (expected . form)
-          in '(("no clause of the simulator has" wall (map) "(wall)" :clauses '())
+          in '(("no built-in clause has" wall (map) "(wall)" :clauses '())
                ("with a form" nook (map) "(nook)")
                ("one of the options" nook (map) "(nook)" :cells '())
                ("one of the options" nook (map) "(nook)" :claws '())

@@ -206,7 +206,7 @@ as STATES say. GO-ON is called after each."
         (run:run-ticks 8))
       (is (< 8 (length texts)))
       (is (every (lambda (text) (has-words-p text "passing")) texts)))
-    (is-true (has-words-p (driver:run-plan 'undo-oneself) "a plan has made this call"))
+    (is-true (has-words-p (driver:run-plan 'undo-oneself) "a plan cannot rewind its own run"))
     (let ((simulation time:*simulation*) (text nil))
       (base:join-thread
        (base:start-thread (lambda () (setf text (trouble-of (lambda () (run:rewind 1 simulation)))))

@@ -370,7 +370,7 @@ output."
                   (robot:robot-camera rover 0) :non-local '((:kickers t)) nil)
                  (run:run-ticks 5))))
     (is-true (some (lambda (text)
-                     (has-words-p text ":kickers, nor is it declared"
+                     (has-words-p text ":kickers, which is not declared"
                                   "an option for making things"))
                    texts))))
 

@@ -112,7 +112,7 @@ SIMULATION was forked, because ticks may have passed in the fork."
                      (simulation-messages simulation)))))
 
 (define-event *rewound-end-hooks*
-  "Functions called at the end of a rewound headless run, with this run and its last successor.")
+  "Functions called at the end of a headless run that was rewound, with the run and its successor.")
 
 (defun end-headless (simulation)
   "End SIMULATION or, if it was rewound, its successor."

@@ -44,12 +44,12 @@ last tick. Requests that only stop something do not count. Return NIL if there a
   (first-warning-for-key-p '(:lines-typed) (simulation-world simulation)))
 
 (defparameter *prompt-remedy*
-  "STEP N passes N ticks, PLAN NAME carries out a plan to its end."
+  "STEP N passes N ticks; PLAN NAME carries out a plan to its end."
   "How to pass ticks at the prompt.")
 
 (defun undone-request-names (simulation)
-  "Return two lists of names: first the requests to SIMULATION and the plans that have not begun,
-then these plans alone."
+  "Return two lists of names: requests to SIMULATION and plans that have not begun; these plans
+only."
   (let ((plans (unfinished-work-texts simulation))
         (requests (loop for request in (timeline-inbox (simulation-timeline simulation))
                         ;; For requests of plans, the plan is named.
@@ -78,7 +78,6 @@ itself has checked which work was in progress; checks by a prompt do not count."
           append (participant-cut-off participant))))
 
 (defun cut-off-work-text (simulation)
-  "Return a text, with a remedy, about work that the end of SIMULATION cuts off; or NIL."
   (let ((cut-off (cut-off-work-texts simulation)) (typed (belongs-to-prompt-p simulation)))
     (when cut-off
       (format nil "At the end~:[ of with-simulation~;~], at tick ~D, ~{~A~^, ~} had not ended and ~

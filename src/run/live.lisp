@@ -95,8 +95,8 @@ ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the d
              simulation))))
 
 (defun call-while-starting (world function)
-  "With custody of WORLD, stop its clock and call FUNCTION, which starts the clock again. Signals
-MISUSE in a nested call, when this thread is already starting WORLD."
+  "Own WORLD, stop its clock, and call FUNCTION, which starts the clock again. Signals MISUSE in a
+nested call, when this thread is already starting WORLD."
   (let* ((timeline (ensure-timeline world)) (custody (timeline-custody timeline)))
     (flet ((start ()
              (when (eq (current-thread) (custody-starter custody))

@@ -24,8 +24,8 @@
   "Another thread owns SIMULATION. Wait a moment if that thread only inspects SIMULATION. Signals
 MISUSE if it passes ticks of SIMULATION."
   (when (timeline-passing-p (simulation-timeline simulation))
-    (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. Only one thread at a ~
-                 time can do so."
+    (reject-use "run-ticks: another thread passes ticks of ~A, or changes it. Try again when that ~
+                 thread has finished."
                 (simulation-name simulation)))
   (answer-own-questions)
   (yield-thread))

@@ -82,7 +82,7 @@ are the robots' blueprints. There is also a text for each robot that is now in a
     (handler-case
         (perform-operator name (restored-arguments arguments simulation) simulation "the journal")
       (error (trouble)
-        (reject-use "The journal cannot be replayed: its ~A: ~A."
+        (reject-use "The journal cannot be replayed: its ~A has failed: ~A."
                     (entry-text entry number) (one-line-text trouble))))))
 
 (defun perform-entries (entries number simulation)

@@ -24,11 +24,11 @@ its clock runs in this thread, else NIL."
 (defun check-rewind-allowed-here (simulation)
   "Signal MISUSE if this code runs inside SIMULATION, or SIMULATION is headless and not current."
   (cond ((continues-in-forks-p)
-         (reject-use "rewind: a plan has made this call, and would undo itself. Use PROJECT or ~
-                      TRY-BEST to look ahead."))
+         (reject-use "rewind: a plan cannot rewind its own run. Use PROJECT or TRY-BEST to look ~
+                      ahead."))
         ((run-paced-by-this-thread simulation)
-         (reject-use "rewind: this is the thread of the clock of ~A, where its ticks are passing. ~
-                      Rewind ~A at the prompt or the REPL, or from a thread of your own."
+         (reject-use "rewind: this thread passes the ticks of ~A. Rewind ~A at the prompt or the ~
+                      REPL, or from a thread of your own."
                      (simulation-name (run-paced-by-this-thread simulation))
                      (simulation-name simulation)))
         ((and (owner-p simulation)
@@ -207,7 +207,7 @@ signal MISUSE."
 ;;; The journal.
 
 (defun record-rewind (from &optional (simulation (current-simulation)))
-  "Record in the journal of SIMULATION a rewinding from the tick FROM to the current tick."
+  "Record a rewind from the tick FROM to the current tick in the journal of SIMULATION."
   (record-operation simulation 'rewound (list from)))
 
 (define-operator 'rewound '(integer) #'record-rewind)
@@ -216,7 +216,6 @@ signal MISUSE."
   "The lock held by the thread that rewinds a run: only one thread at a time can rewind.")
 
 (defun rewind-with-lock (ticks simulation)
-  "Rewind SIMULATION by TICKS as REWIND does. The caller holds *REWINDING-LOCK*."
   (multiple-value-bind (tick past asked)
       (asking (simulation)
         (check-keeps-forks simulation)

@@ -113,7 +113,7 @@ error of the class DAMAGE that names FILE. KIND is the expected kind of FILE."
   (handler-case (call-with-saved-text function file)
     (unknown-name (trouble) (error trouble))
     (stream-error ()
-      (error damage :file file :reason "the operating system does not let the file be read"))
+      (error damage :file file :reason "the operating system does not allow reading it"))
     ((or error storage-condition) (trouble)
       (error damage :file file :reason (or (advice-on-file file kind)
                                            (one-line-text trouble))))))

@@ -154,9 +154,9 @@ discrete or numeric."
 of the possible values, unevaluated. Options, in any order:
   :success p -- base probability that a discrete reading is correct; default 1
   :base deviation -- base standard deviation of numeric readings; default 0
-  :max-mult factor -- the largest multiplier of the base deviation, far away; default 1
-  :noticed p (or :support p) -- base probability of being sensed unasked; default 0
-  :supported-by (name...) -- attributes that raise the probability :noticed when asked for
+  :max-mult factor -- the largest multiplier of the base deviation, reached far away; default 1
+  :noticed p (or :support p) -- base probability of being sensed without request; default 0
+  :supported-by (name...) -- attributes that, when asked for, raise the probability :noticed
   :documentation text -- an addition: what the attribute is
 Signals MALFORMED-DEFINITION. Return the name."
   (expand-definition form environment (lambda () (attribute-forms name domain options))))
@@ -201,7 +201,7 @@ below 0. Numbers are from -1e15 to 1e15."
   (and (member value (attribute-domain attribute) :test #'value-equal) t))
 
 (defun can-be-false-p (attribute)
-  "True if the value NIL of ATTRIBUTE (NIL if undeclared) means false, rather than unspecified."
+  "True if NIL as a value of ATTRIBUTE (NIL if undeclared) means false, not unspecified."
   (and attribute (member nil (attribute-domain attribute)) t))
 
 (defun specifies-range-p (attribute value)

@@ -174,7 +174,7 @@ seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-betwe
 (public set-kicker)
 (defun set-kicker (thing kicker-name)
   "Attach the kicker KICKER-NAME, a symbol or a kicker, to THING (manual 5.3.1). Signals
-WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF when it runs. See reading 171."
+WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF while it runs. See reading 171."
   (check-argument set-kicker thing (thing-p thing) (argument-type-text 'thing thing))
   (let ((kicker (find-kicker kicker-name)))
     (changing ((world-of-living-thing thing) set-kicker thing (kicker-name kicker))

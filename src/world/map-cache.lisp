@@ -128,7 +128,6 @@
                "; the map is built anew."))
 
 (defun restore-from-cache (map path key)
-  "Fill MAP from the cache file PATH. Return true on success."
   (handler-case
       ;; Each cell is a wall, or a place, or both.
       (let ((words (read-words path (+ +cache-header+ (* 4 (map-width map) (map-height map))))))

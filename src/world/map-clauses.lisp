@@ -113,7 +113,7 @@ and, with a warning in a compiled file, for an invalid clause."
     (unless (or *loading-simulator-p*
                 (and (getf options :clauses) (or (null old) (clause-kind-derived-p old))))
       (reject-clause definition name
-                     "a name that no clause of the simulator has, and :clauses with a form"))))
+                     "a name that no built-in clause has, and :clauses with a form"))))
 
 (defun clause-function-form (lambda-list options)
   (destructuring-bind (map . parameters) lambda-list

@@ -74,7 +74,7 @@ would next draw the gap with the index NEXT."
 ;; Inline, so that SCALE is not boxed.
 (declaim (inline draw-next-gaps))
 (defun draw-next-gaps (outlook index end scale dice)
-  "Store the next gaps of SCALE and DICE, for trials before END, in OUTLOOK. The next success is at
+  "Store in OUTLOOK the next gaps of SCALE and DICE, for trials before END. The next success is at
 INDEX. Return the index of the first success after these gaps."
   (declare (type outlook outlook) (type (unsigned-byte 50) index end)
            (type double-float scale) (type dice dice))

@@ -101,8 +101,8 @@ if NAME is unknown and resembles the name of a thing."
 
 (defun not-a-thing-text (value)
   "Return an explanation of how to refer to a thing, for a caller who passed VALUE instead."
-  (format nil "such as (find-thing '~:[NAME~;~:*~(~A~)~]) returns~:[~;, which is NIL where nothing ~
-               is called NAME~@[: ~A~]~]"
+  (format nil "such as the value of (find-thing '~:[NAME~;~:*~(~A~)~])~:[~;, but this value is NIL ~
+               if nothing is called NAME~@[: ~A~]~]"
           (and value (symbolp value) (not (keywordp value)) value)
           (null value)
           (missed-name-text)))

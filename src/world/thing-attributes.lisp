@@ -197,8 +197,8 @@ thing's clause in a map, or NIL."
               (warning-given-p key world)
               (attribute-in-world-p key world))
     (warn-once key world
-               (format nil "No thing here has ~(~S~), nor is it declared~@[; did you mean ~(~S~)?~
-                            ~]~:[~;: it is an option for making things, and no attribute~]"
+               (format nil "No thing here has ~(~S~), which is not declared~@[; did you mean ~
+                            ~(~S~)?~]~:[~;: it is an option for making things, not an attribute~]"
                        key (declared-name-like key) (option-of-things-p key)))))
 
 ;;; A redefined attribute may no longer accept the values that things have.
