@@ -204,16 +204,16 @@ package, or a list of names. It may be an expression that returns either, such a
 variable that is not the name of a robot. Options:
 - SEED, an integer, determines all randomness.
 - PARAMETERS, a list of lists (name value), binds parameters; others keep their current values.
-- CLEAN, if true, calls CLEAN-SIMULATION after binding PARAMETERS, so that it removes noise set by
-  them, too.
+- CLEAN, if true, calls CLEAN-SIMULATION after binding PARAMETERS, so noise in PARAMETERS is
+  removed, too.
 - JOURNAL, if true, makes the run keep a journal. KEEP makes the run keep forks, so that it can be
   rewound, see KEEP-FORKS.
 - THINKING says how much time thinking costs, see SET-THINKING.
 - ERRORS says how errors in user code and failures of plans are reported: :REPORT, :SIGNAL or
   :COLLECT, see below.
-Only the thread of BODY sees the bindings of robots and parameters. In another thread, a robot's
-name means the robot at top level, so pass the robot itself to the thread. A command to a top-level
-robot that is in no run queues a warning. Messages go to the message queue of the run. When BODY
+Only the thread of BODY sees the bindings of robots and parameters. In other threads a robot's name
+means the top-level robot, so pass the robot itself to a thread. A command to a top-level robot
+queues a warning if the robot is in no run. Messages go to the message queue of the run. When BODY
 ends, the run is over: commands in progress are interrupted, and the robots take no more commands.
 
 After an error in user code or a failure of a plan, the run continues. ERRORS says how it is

@@ -225,8 +225,8 @@ Signals MISUSE if SIMULATION keeps no journal."
                            operator (timeline-name timeline) (timeline-over timeline)))))
 
 (defun warn-of-change-elsewhere (world operator)
-  "Warn once for WORLD if OPERATOR changes WORLD although its run is over, or although WORLD is
-between two runs and this code works in another run."
+  "OPERATOR changes WORLD. Warn once for WORLD if its run is over, or if WORLD is between two runs
+and this code works in another run."
   (let ((over (timeline-over (world-timeline world))))
     (cond (over
            (warn-once (list :past) world

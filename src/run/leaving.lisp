@@ -21,7 +21,7 @@ There, use the robot that it names, or name both: (with-simulation ((ROBOT OTHER
 
 (defun requests-too-late-text (simulation)
   "Return a text, with a remedy, about requests that the program has made to SIMULATION since its
-last tick. Requests that only stop something do not count. Return NIL if there are no others."
+last tick. Requests that only stop something do not count. Return NIL if no others exist."
   (let ((names (loop for request in (timeline-inbox (simulation-timeline simulation))
                      when (and (operation-p request)
                                (issued-by-program-p request)

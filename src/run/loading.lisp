@@ -21,7 +21,7 @@
     (when trouble (error "the head makes no sense: ~A" trouble))))
 
 (defun saved-run-head-error-text (head)
-  "Return a text about an error in HEAD that HEADER-ERROR-TEXT does not check, or NIL."
+  "Return a text about an error in HEAD that HEADER-ERROR-TEXT does not find, or NIL."
   (cond ((not (settings-p (getf head :noise))) "the noise in the head makes no sense")
         ((settings-error-text (getf head :noise)))
         ((not (or (null (getf head :dice)) (random-state-numbers-p (getf head :dice))))

@@ -79,7 +79,7 @@ of each number, or NIL for an external object."
       (:agenda (make-agenda)))))
 
 (defun saved-slots (type names)
-  "Return the slots of structures of TYPE. Signals an error unless the slots to save have NAMES."
+  "Return the slots of structures of TYPE. Signals an error unless NAMES lists the slots to save."
   (unless (and (symbolp type)
                type
                (typep (find-class type nil) 'structure-class)

@@ -166,9 +166,9 @@ cannot be saved. Return the truename of FILE."
 ;; The restart is established in the thread that saves the run: another thread may own the run.
 (addition save-simulation)
 (defun save-simulation (file &optional (simulation (current-simulation)))
-  "Write the state of SIMULATION, between two ticks, to FILE, so that LOAD-SIMULATION continues the
-run exactly. An existing FILE is replaced only after the new file has been written and loaded as a
-check. Return the truename of FILE.
+  "Write the state of SIMULATION to FILE, between two ticks, so that LOAD-SIMULATION can continue
+the run exactly. An existing FILE is replaced only after the new file has been written and loaded as
+a check. Return the truename of FILE.
 - Saved: world, things, kickers, robots and their parts, designators, tracks, odometers, commands in
   progress and requested commands, parameters, seed and dice, in a headless run also the dice of
   CL:RANDOM in its programs; and the journal, so that a replay still repeats the whole run.

@@ -97,8 +97,8 @@ Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (find-map map))
 
 (defgeneric map-replaced (old new)
-  (:documentation "Called when the map NEW has replaced the map OLD. OLD is NIL if there was no such
-map; NEW is NIL if OLD was undefined. The layer above ends the runs of OLD.")
+  (:documentation "Called when the map NEW has replaced the map OLD. OLD is NIL if there was no map
+of this name. NEW is NIL if OLD is no longer defined. The layer above ends the runs of OLD.")
   (:method (old new) (declare (ignore old new)) nil))
 
 (defun register-map (map)

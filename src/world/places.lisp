@@ -208,7 +208,7 @@ and true if no type was left out (reading 70)."
     map))
 
 (defun form-wall-p (form column row)
-  "True if the match FORM has a wall at COLUMN and ROW, counted from its upper left corner."
+  "True if FORM, a match form, has a wall at COLUMN and ROW. The upper left corner is at 0, 0."
   (and (<= 0 column) (<= 0 row) (eq t (nth column (nth row form)))))
 
 (defun make-rule-map (rule)
