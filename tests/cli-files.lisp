@@ -285,7 +285,8 @@ function of its name. Return that parameter."
 (test files.that-are-scripts-of-lines-say-so
   (dolist (said (list (complaint-of-loading (format nil "; mine~%turn 1~%go 3~%"))
                       (trouble-in-file (format nil "(values 1)~%turn 1~%go 3~%"))))
-    (is-true (has-words-p said "TURN is a command of the prompt" "a script of lines: ars-magna "))))
+    (is-true (has-words-p said "TURN is a command of the prompt"
+                          "looks like a script. Run it by: ars-magna "))))
 
 (test files.that-are-being-loaded-are-named-when-a-batch-is-ended
   "By a time limit or control C; and so are lines that are piped in."

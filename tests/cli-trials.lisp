@@ -113,7 +113,7 @@
        (is-true (has-words-p (joined (type-batch (string-trim " " line) "resume"))
                              "over at tick 3: error" "This is loud."))
        (is (= 3 (length (type-batch "failures try loudly"))))
-       (is-true (has-words-p (complaint "failures interrupting") "has not been run"))))))
+       (is-true (has-words-p (complaint "failures interrupting") "was not run"))))))
 
 (test trial.stops-a-live-prompt-meanwhile
   (let ((lines (type-live '("pause" "(simulation-tick)" "trial trying well 1" "resume" "trial off"

@@ -109,7 +109,8 @@
 
 (test typing.however-much-is-pasted-the-transcript-stays
   (loop for rows from 1 to 100
-        for places = (window::compute-places (window::make-preferences) (constantly 100) 640 480 rows)
+        for places = (window::compute-places (window::make-preferences) (constantly 100) 640 480
+                                             rows)
         do (is (<= 20 (fifth (assoc 'window::transcript places))))
            (is (= 444 (loop for (name nil top nil height) in places
                             when (eq name 'window::interactor) return (+ top height))))))

@@ -29,7 +29,7 @@
                  ("(1 grab \"\\D800000;\")" "backslash") ("(1 grab \"" "ends too early")
                  ("(1 grab \"\\\")" "backslash")
                  ("(1 grab |x|)" "no package") ("(1 grab) (2 grab)" "more than one datum")
-                 ("(1 set-seed)" "entry 1, set-seed at tick 1: ")
+                 ("(1 set-seed)" "entry 1, set-seed at tick 1 has failed: ")
                  ("(1 set-seed 1 2)" "argument list") ("(1 set-seed \"1\")" "a whole number")
                  ("(1 robot-turn (the robot \"NOBODY\") 1)" "no robot in this simulation")
                  ("(1 robot-turn (the robot) 1)" "not a reference to")

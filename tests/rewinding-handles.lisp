@@ -68,7 +68,7 @@
 (defmacro is-stale (task)
   "Check that no word to TASK is taken for one to another task."
   `(progn (is (null (run:counterpart ,task)))
-          (is-trouble ("was rewound" "(plans)" "begun plans anew") (driver:end-plan ,task))
+          (is-trouble ("was rewound" "(plans)" "RPL-INIT-ROBOT was called") (driver:end-plan ,task))
           (is-trouble ("count-for-ever") (rpl:suspend ,task))
           (is (= 1 (length (driver:plans))) "nobody else has ended")))
 
@@ -174,7 +174,7 @@ that look at the stack may leave some."
                                         (declare (ignore ignored))
                                         (setf text (trouble-of (lambda () (run:rewind 1))))))
         (awaiting text)
-        (is-true (has-words-p text "thread of the clock" "REPL") "~A" text)))))
+        (is-true (has-words-p text "this thread passes the ticks" "REPL") "~A" text)))))
 
 (test rewind.is-misuse-in-the-thread-of-any-clock
   "Else two clocks may wait for one another."
@@ -187,7 +187,7 @@ that look at the stack may leave some."
                                  (declare (ignore ignored))
                                  (setf text (trouble-of (lambda () (run:rewind 1 other))))))
            (awaiting text)
-           (is-true (has-words-p text "the clock of arena"
+           (is-true (has-words-p text "passes the ticks of arena"
                                  "Rewind workbench at the prompt")
                     "~A" text))
       (run:stop-clock other))))

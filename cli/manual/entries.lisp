@@ -39,6 +39,7 @@
   "Lists (key title introduction), in order. A name is linked to the first chapter that has it.")
 
 (defun chapter-title (chapter)
+  "Return the title of CHAPTER, a key of *CHAPTERS*."
   (second (assoc chapter *chapters*)))
 
 (defun chapter-introduction (chapter) (third (assoc chapter *chapters*)))

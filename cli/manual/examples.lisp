@@ -168,6 +168,7 @@ names. EXAMPLES are the examples found, the last first."
     (reverse (search-examples state))))
 
 (defun read-examples (pages)
+  "Return all examples on PAGES."
   (mapcan #'examples-of-page (copy-list pages)))
 
 ;;; Choosing.

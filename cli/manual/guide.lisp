@@ -156,4 +156,5 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
                :tokens (if (string= source "src/readings.md") (add-reading-ids tokens) tokens))))
 
 (defun read-guide ()
+  "Return all pages of the guide."
   (mapcar #'read-page (page-sources)))

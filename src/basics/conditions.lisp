@@ -45,6 +45,7 @@
   (:documentation "A function was called with an argument that it cannot use."))
 
 (defun reject-argument (operator name value expected)
+  "Signal WRONG-ARGUMENT."
   (error 'wrong-argument :operator operator :name name :value value :expected expected))
 
 (defmacro check-argument (operator place test expected)

@@ -142,6 +142,7 @@ Signals WRONG-ARGUMENT unless MEAN and DEVIATION are numbers from -1e15 to 1e15.
 
 (declaim (inline digest-add-word))
 (defun digest-add-word (digest word)
+  "Add WORD, 64 bits, to DIGEST."
   (setf (digest-value digest)
         (mix-bits (ldb (byte 64 0) (* (logxor (digest-value digest) word) #x100000001B3)))))
 

@@ -22,6 +22,7 @@ for the copy and true, or NIL and false" :writable)
   (options '() list "a plist of options; see COPIER-OPTION" :writable))
 
 (defun copier-option (copier key)
+  "Return the value of the option KEY of COPIER, or NIL."
   (getf (copier-options copier) key))
 
 (defun copied-run-value (copier symbol)

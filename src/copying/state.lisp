@@ -185,4 +185,5 @@ type; so do not print the object."
   `(unless ,test (signal-contradiction ,control ,@arguments)))
 
 (defun proper-list-of-p (predicate object)
+  "True if OBJECT is a proper list and PREDICATE is true for each of its elements."
   (and (proper-list-p object) (every predicate object)))

@@ -104,6 +104,7 @@ package in which users cannot define functions."
   (and (current-source) t))
 
 (defun reread-definition (definition)
+  "Read the form of DEFINITION again from its file, and return it."
   (read-definition-again (source-file (defining-source definition))
                          (defining-form definition) (defining-ordinal definition)))
 

@@ -97,6 +97,7 @@ strings and symbols" :writable))
         when (and entry (users-entry-p entry)) collect entry))
 
 (defun defined-names (registry)
+  "Return a list of the names defined in REGISTRY, in order."
   (mapcar #'entry-name (registry-entries registry)))
 
 (defun names-to-suggest (registry)

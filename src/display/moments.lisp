@@ -133,6 +133,7 @@ of them are moments, or lists (tick text [robot]), up to the tick END."
       (remove-if-not (lambda (moment) (member (moment-kind moment) (cons :note kinds))) moments)))
 
 (defun sort-moments (moments)
+  "Return MOMENTS sorted by tick."
   (stable-sort (copy-list moments) #'< :key #'moment-tick))
 
 (defparameter *expected-error-codes* '(:robot-blocked :not-tracking :lost-track :track-lost)

@@ -83,6 +83,7 @@
         (t (write-stroke canvas gcontext))))
 
 (defun write-escaped-text (text stream)
+  "Write TEXT to STREAM with the special characters of SVG escaped."
   (write-xml-text (substitute-if-not #\Space #'graphic-char-p (string text)) stream))
 
 (defun write-text-element-end (canvas gcontext string)

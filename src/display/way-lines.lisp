@@ -128,6 +128,7 @@ because ways would overlap there.")
       (dolist (points (pieces-in-lane line)) (draw-lines canvas draw-gcontext* points)))))
 
 (defun draw-way-arrows (canvas lines)
+  "Draw the arrowheads of the ways LINES, without overlaps."
   (let ((arrows '()))
     (dolist (line (remove-if-not #'way-line-arrows-p lines))
       (dolist (points (pieces-in-lane line))

@@ -19,6 +19,7 @@
   (closer-mop:generic-function-name function))
 
 (defun methods-of-generic (function)
+  "Return a list of the methods of the generic function FUNCTION."
   (closer-mop:generic-function-methods function))
 
 (defun methods-on-class (name)
@@ -35,6 +36,7 @@
   (mapcar #'closer-mop:slot-definition-name (closer-mop:class-slots class)))
 
 (defun class-slot-types (class)
+  "Return a list (name type) for each slot of objects of CLASS."
   (mapcar (lambda (slot)
             (list (closer-mop:slot-definition-name slot) (closer-mop:slot-definition-type slot)))
           (closer-mop:class-slots class)))

@@ -40,6 +40,7 @@
     (and table (consp form) (values (gethash form table)))))
 
 (defun has-source-location-p (form)
+  "True if FORM has a source location in the current compilation."
   (and (source-location form) t))
 
 (defun copy-source-location (new old)

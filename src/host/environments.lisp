@@ -21,6 +21,7 @@ and NIL if the compiler does not know them."
         (values nil nil))))
 
 (defun comma-p (object)
+  "True if OBJECT is a comma in a backquoted form."
   (internal (:sb-int #:comma-p) object))
 
 (defun form-behind-comma (object)
@@ -61,6 +62,7 @@ and so on, or NIL if it is not known."
   (and (variable-kind symbol environment) t))
 
 (defun special-variable-p (symbol environment)
+  "True if SYMBOL is a special variable in ENVIRONMENT."
   (eq :special (variable-kind symbol environment)))
 
 ;;; Functions and macros.

@@ -67,6 +67,7 @@ true. ~ and ~/ are the home directory."
     (subseq name (1+ (or (position #\/ name :from-end t) -1)))))
 
 (defun file-size (path)
+  "Return the size of the file PATH in bytes."
   (with-open-file (in path :element-type '(unsigned-byte 8)) (file-length in)))
 
 (defun existing-path (path)
@@ -143,6 +144,7 @@ relative ones start in the BASE-DIRECTORY. Signals an error if the system refuse
 ;;; Files shared by several processes.
 
 (defun truncate-file (path length)
+  "Truncate the file PATH to LENGTH octets."
   (sb-posix:truncate (absolute-native-name path) length)
   (values))
 
@@ -179,6 +181,7 @@ written, call REFUSED instead of FUNCTION. The system releases the lock when thi
       (sb-posix:close descriptor))))
 
 (defun process-id ()
+  "Return the ID of this process."
   (sb-posix:getpid))
 
 (defun process-running-p (number)

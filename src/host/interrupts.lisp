@@ -24,6 +24,7 @@ WAITING-P is true, only while SBCL waits.")
 
 (declaim (inline interrupts-deferred-p))
 (defun interrupts-deferred-p ()
+  "True if this thread defers interrupts now."
   (and *interrupt-deferral* t))
 
 (defun call-deferring-interrupts (function)
@@ -178,6 +179,7 @@ thread. GIVE-UP may make a non-local exit."
   (internal-name :sb-sys '#:interactive-interrupt))
 
 (defun signal-user-interrupt ()
+  "Signal the error USER-INTERRUPT."
   (error (internal-name :sb-sys '#:interactive-interrupt)))
 
 (defun handle-signal (signal handler)

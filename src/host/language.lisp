@@ -51,11 +51,13 @@ set. Signals UNBOUND-VARIABLE if SYMBOL has no global value."
                    :synchronized (sb-ext:hash-table-synchronized-p table)))
 
 (defun weak-table-p (table)
+  "True if the hash TABLE is weak."
   (and (sb-ext:hash-table-weakness table) t))
 
 ;;;; Weak references
 
 (defun make-weak-reference (object)
+  "Return a weak reference to OBJECT."
   (sb-ext:make-weak-pointer object))
 
 (defun weak-value (weak)
@@ -106,6 +108,7 @@ infinities, NaNs, and integers and ratios that are too large."
       (finite-non-double-p object)))
 
 (defun positive-infinity-p (object)
+  "True if OBJECT is a float that is positive infinity."
   (and (floatp object) (sb-ext:float-infinity-p object) (plusp object)))
 
 (declaim (inline double-to-bits bits-to-double))

@@ -30,9 +30,11 @@
 ;;; return may be interrupted, when the user asks for it.
 
 (defun make-lock (name)
+  "Return a new lock named NAME."
   (bordeaux-threads:make-lock name))
 
 (defmacro with-lock ((lock) &body body)
+  "Run BODY while holding LOCK."
   `(bordeaux-threads:with-lock-held (,lock) ,@body))
 
 (defun call-if-free (lock function)
@@ -125,6 +127,7 @@ Report nothing if the unit was aborted because this Lisp exits."
 
 (declaim (inline current-thread))
 (defun current-thread ()
+  "Return the current thread."
   sb-thread:*current-thread*)
 
 (defun yield-thread ()
