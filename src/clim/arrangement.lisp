@@ -39,7 +39,7 @@
 
 (defstruct preferences
   "The user's layout preferences for a window. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are
-in pixels, or NIL for what suits the window. FOLDED lists sections that show only their title.
+in pixels; NIL means a size that suits the window. FOLDED lists sections that show only their title.
 MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit the screen."
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))
@@ -95,8 +95,8 @@ the rest. Otherwise each gets a fair share."
         (t (share-height-with-plan needs height))))
 
 (defun share-height-with-plan (needs height)
-  "Divide HEIGHT, which is less than NEEDS. The section of plans gets what it needs, but at most
-half of HEIGHT or what the others leave. The others get fair shares."
+  "Divide HEIGHT, which is less than NEEDS. The section of plans gets what it needs, up to half of
+HEIGHT, or more if the others leave more. The others get fair shares."
   (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
     (if (and plan others)
         (let ((share (min (second plan)
@@ -122,8 +122,8 @@ what they need. The other sections get equally many whole lines."
                 (share-height-fairly large (- height (reduce #'+ small :key #'second)))))))
 
 (defun share-lines (needs fair height)
-  "Divide HEIGHT among NEEDS. Each section gets as many whole lines as FAIR pixels hold. The first
-sections get one of the remaining lines each, and the last one gets the remaining pixels."
+  "Divide HEIGHT among NEEDS. Each section gets as many whole lines as FAIR pixels hold. Remaining
+lines go to the first sections, one each, and remaining pixels to the last."
   (let* ((share (min (height-of-whole-lines fair) (max 0 fair)))
          (rest (- height (* share (length needs)))))
     (loop for ((section) . more) on needs

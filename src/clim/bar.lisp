@@ -9,8 +9,8 @@
                    (:copier nil))
   "A button. A click on LABEL calls COMMAND, a function of no arguments. So does the character KEY,
 unless KEY is NIL. HELP describes what COMMAND does. LIT-P is true while the button is on. In the
-tool bar, LABEL may be a function, and LIT-P is NIL or a function. These functions take the window
-as argument; they return the label, and whether the button is on."
+tool bar, LABEL may be a function, and LIT-P is NIL or a function. Both take the window as argument
+and return the label or whether the button is on."
   (label "" :read-only t)
   (key nil :type (or null character) :read-only t)
   (command nil :type (or symbol function) :read-only t)

@@ -86,8 +86,8 @@
                       :line-thickness (clim-line-thickness canvas gcontext)))
 
 (defun outline-box (x y width height thickness)
-  "Return a box, as values x, y, width and height, for an outline inside the box X, Y, WIDTH,
-HEIGHT. A line of THICKNESS with its middle along the returned box stays inside that box."
+  "Return the box, as values x, y, width and height, along which an outline of THICKNESS must be
+drawn to stay inside the box X, Y, WIDTH, HEIGHT."
   (let ((inset (/ (1- thickness) 2)))
     (values (+ x inset) (+ y inset)
             (max 1 (- width thickness)) (max 1 (- height thickness)))))
@@ -149,7 +149,7 @@ HEIGHT. A line of THICKNESS with its middle along the returned box stays inside 
     (list (+ dx left) (+ dy top) (+ dx right) (+ dy bottom))))
 
 (defun visible-part (canvas box)
-  "Return the part of BOX, in coordinates of the medium, that CANVAS does not clip away, or NIL."
+  "Return the part of BOX that CANVAS shows, or NIL. Both are in coordinates of the medium."
   (if (canvas-seen canvas)
       (destructuring-bind ((left top right bottom) (from-x from-y to-x to-y))
           (list box (canvas-seen canvas))

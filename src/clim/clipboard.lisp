@@ -73,7 +73,7 @@ if a piece does not come or the text is too long."
                  (reject-paste "The text is too long to be pasted")) (write-string piece out)))))
 
 (defun fetch-selection-as (type selection display mailbox)
-  "Return the text of SELECTION in the X type TYPE, a string of octets, or NIL if there is no text."
+  "Return SELECTION as a string of octets of the X type TYPE, or NIL if there is no text."
   (xlib:convert-selection selection type mailbox :mcclim nil)
   (ecase (await-selection-answer display)
     ((nil) (reject-paste "The program with the text to be pasted does not answer"))
@@ -114,7 +114,8 @@ start), one for each program that receives it in pieces. START is where the next
   (xlib:change-property window property (list (length (offered-text-octets offered))) :incr 32))
 
 (defun send-next-piece (offered window property)
-  "Put the next piece of OFFERED, at last an empty one, into PROPERTY of WINDOW if a program waits."
+  "If a program waits for it, put the next piece of OFFERED, or an empty end, into PROPERTY of
+WINDOW."
   (let ((transfer (find-if (lambda (transfer)
                              (and (xlib:window-equal window (first transfer))
                                   (eq property (second transfer))))

@@ -16,8 +16,8 @@
         (eq old (watcher-simulation (window-watcher window))))))
 
 (defun robot-name-after-switch (window new)
-  "Return the name of the robot that WINDOW will show in the run NEW: the robot that the prompt of
-WINDOW commands, else a robot with the name of the robot shown before, else another. Return NIL if
+  "Return the name of the robot that WINDOW will show in the run NEW. First choice is the robot that
+the prompt of WINDOW commands, then one with the same name as before, then any other. Return NIL if
 other windows show all robots of NEW."
   (let ((names (mapcar #'robot-name (simulation-robots new)))
         (own-p (eq window (window-of-this-thread))))

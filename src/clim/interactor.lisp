@@ -34,7 +34,7 @@ about the waiting breaks. Return NIL if ANSWERS is empty."
             (and (rest answers) (length (rest answers))) (first answers))))
 
 (defun text-above-input (conversation text)
-  "Return a list: the note above the input line, or NIL, and its ink. TEXT is in the input line."
+  "Return a list of the note above the input line (or NIL) and its ink. The input line has TEXT."
   (let ((reading (line-awaiting-input conversation))
         (asked (waiting-breaks-text
                 (ars-magna.cli:waiting-break-texts (conversation-session conversation))))

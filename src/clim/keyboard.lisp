@@ -10,7 +10,7 @@
   (focus-and-repaint (pane-named window 'interactor)))
 
 (defun focus-clicked-pane (pane)
-  "Direct keys to PANE, which was clicked, from now on; or to the prompt if PANE is the transcript."
+  "Send keys to the clicked PANE from now on, or to the prompt if PANE is the transcript."
   (typecase pane
     ((or world-pane detail-pane plan-pane)
      (setf (window-typing-p (window-of pane)) nil)
@@ -27,8 +27,8 @@
 (defconstant +arrow-step+ 60 "The number of pixels that an arrow key moves the view.")
 
 (defun arrow-key-offset (key-name)
-  "Return two values: by how many pixels the key KEY-NAME moves the view to the right, and down.
-Return NIL if it is no arrow key."
+  "Return two values: the pixels by which the key KEY-NAME moves the view right, and down. Return
+NIL if KEY-NAME is no arrow key."
   (case key-name
     (:left (values (- +arrow-step+) 0))
     (:right (values +arrow-step+ 0))
@@ -162,7 +162,7 @@ dead key and a space. PAIRS is a string of pairs: a letter and its result with t
 
 (defun update-dead-key (name character)
   "Record in *DEAD-KEY* the effect of pressing the key NAME. CHARACTER is its character, or NIL.
-Return the elements of *DEAD-KEYS*, or NIL, for two keys: the one that was waiting, and NAME."
+Return two values, elements of *DEAD-KEYS* or NIL: one for the key that was waiting, one for NAME."
   (let ((before *dead-key*) (now (assoc name *dead-keys*)))
     ;; Keys like shift have no character, and leave a dead key waiting.
     (when (or now character)
@@ -170,8 +170,8 @@ Return the elements of *DEAD-KEYS*, or NIL, for two keys: the one that was waiti
     (values before now)))
 
 (defun events-after-dead-key (event)
-  "Return a list of the events to handle in place of EVENT, a key press, when dead keys are combined
-with the characters after them."
+  "Combine a dead key with the character after it: return a list of the events to handle in place of
+the key press EVENT."
   (let ((character (clim:keyboard-event-character event)))
     (multiple-value-bind (before now)
         (update-dead-key (clim:keyboard-event-key-name event) character)

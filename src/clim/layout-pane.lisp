@@ -58,7 +58,7 @@
                           (needed-section-height (pane-named window section) section column)))))
 
 (defun needed-height-function (needs)
-  "Return a function of a section: its height in NEEDS, lists (section pixels), or 0."
+  "Return a function that returns the height of a section in NEEDS, lists (section pixels), or 0."
   (lambda (section) (or (second (assoc section needs)) 0)))
 
 (defun compute-layout-places (layout needs)
@@ -81,8 +81,8 @@ section of plans is ignored, because it takes any height."
                    (<= pixels (fifth (assoc section places))))))
 
 (defun greatest-needs-so-far (layout)
-  "Return lists (section pixels): the height for each section of LAYOUT. It is the most that the
-section has needed so far, or its present need if the layout has room only for present needs."
+  "Return lists (section pixels): the greatest height that each section of LAYOUT has needed so far.
+If only the heights needed now fit, return those."
   (let* ((now (current-needs layout))
          (before (needed-height-function (pane-needed layout)))
          (most (loop for (section pixels) in now

@@ -16,7 +16,7 @@
   "Lists (family title), in the order of menus: the menu title for each family of prompt lines.")
 
 (defun prompt-menu-title (line)
-  "Return the title of the menu for the prompt line LINE: Prompt if the family of LINE has none."
+  "Return the title of the menu with the prompt line LINE: Prompt if its family has no menu."
   (second (or (assoc (ars-magna.cli:line-family line) *prompt-menu-titles*)
               (assoc :general *prompt-menu-titles*))))
 

@@ -75,8 +75,8 @@ to the robot if that thing is there, and farther away otherwise."
           collect (camera-image-index camera)))
 
 (defun start-tracking-offers (numbers window)
-  "NUMBERS are numbers of designators. Return menu entries to start tracking each designator, one
-for each camera that does not track it."
+  "Return menu entries to start tracking the designators with NUMBERS: for each designator, one
+entry for each camera that does not track it."
   (loop for number in numbers
         append (loop for camera in (robot-image-cameras (window-robot window))
                      for index = (camera-image-index camera)
@@ -94,8 +94,8 @@ for each camera that does not track it."
                               (format nil "hand-grasp ~D ~D" index camera)))))
 
 (defun tracked-offers (numbers window &key held-p)
-  "NUMBERS are numbers of designators of a thing. Return the menu entries for the cameras that track
-the thing. If the robot itself holds the thing (HELD-P), leave out approaching and grasping."
+  "Return the menu entries for the cameras that track a thing. NUMBERS are those of its designators.
+If the robot itself holds the thing (HELD-P), leave out approaching and grasping."
   (loop for camera in (cameras-tracking numbers window)
         unless held-p append (approach-and-grasp-offers camera window)
         collect (list (format nil "Stop tracking it with camera ~D" camera)

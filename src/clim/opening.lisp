@@ -45,7 +45,7 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
         (setf *window-states* (acons name state (remove name *window-states* :key #'first)))))))
 
 (defun restore-settings (window)
-  "Give the new WINDOW the last closed window's settings and the state of its robot's last window."
+  "Give the new WINDOW the settings of the window closed last, and the state saved for its robot."
   (destructuring-bind (settings state)
       (with-lock (*last-settings-lock*)
         (list *last-settings* (rest (assoc (shown-robot-name window) *window-states*))))
@@ -109,8 +109,8 @@ a text about what was ended, to append to a sentence."
             (ars-magna.cli:answerable-by-others-p session))))
 
 (defun run-to-notify (window)
-  "Return the run whose message queue reports that WINDOW has closed. If WINDOW shows a trial or
-fork, it is the run outside, otherwise the run that WINDOW shows."
+  "Return the run to notify that WINDOW has closed: the run that WINDOW shows or, instead of a trial
+or fork, the live run of the robot, if any."
   (let ((simulation (window-simulation window)))
     (if (ars-magna.cli:in-trial-or-fork-p (window-session window))
         (or (ars-magna.cli:live-run-of-robot (shown-robot-name window))
@@ -157,9 +157,9 @@ message says whether the run continues, and how to open another window."
         (remove window (open-window-list))))
 
 (defun robot-to-show (window)
-  "The run of WINDOW is over. Return the name of the robot that WINDOW shall show next, and the run
-of that robot: the robot that a prompt would command or, if another window shows that robot, another
-robot of the same run. Return NIL if there is no such robot."
+  "Return the name and the run of the robot that WINDOW shows next, because its run is over. It is
+the robot that a prompt would command or, if another window shows this robot, another of the same
+run. Return NIL if there is no such robot."
   (multiple-value-bind (simulation name)
       (ars-magna.cli:run-to-continue-in (window-simulation window)
                                         (watcher-robot (window-watcher window)))
@@ -304,8 +304,9 @@ comes first. Other windows are left out while their prompts are in a trial or fo
       (ars-magna.cli:announce-run (window-session window) simulation name))))
 
 (defun open-window (robot)
-  "Show ROBOT in a window; raise and return the window. It is the first of: the window of ROBOT, one
-of its trial or fork, one whose run is over, a new window. Signals MISUSE if there is no X server."
+  "Show ROBOT in a window; raise and return the window. The first that exists is used: the window of
+ROBOT, one of its trial or fork, one of a finished run, a new one. Signals MISUSE if there is no X
+server."
   (let ((window (window-to-show-robot robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (window-shows-p window (robot-name robot) (robot-simulation robot))

@@ -27,7 +27,7 @@
     (pane-buffer pane)))
 
 (defun call-in-buffer (function pane width height)
-  "Call FUNCTION, which paints PANE, with the output sent to its pixmap. Then copy the pixmap to the
+  "Call FUNCTION, which paints PANE, so that it paints the pixmap of PANE. Copy the pixmap to the
 screen. WIDTH and HEIGHT are in screen pixels."
   (let ((buffer (buffer-of pane width height)) (medium (clim:sheet-medium pane)))
     (setf (clim:medium-drawable medium) buffer)

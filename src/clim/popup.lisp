@@ -6,9 +6,9 @@
 ;;; the world continues behind it. It is painted again whenever a pane below it is.
 
 (defstruct (row (:constructor make-row (text &key action tick stays-p)) (:copier nil))
-  "A row of the popup, with TEXT. A click on the row calls ACTION, a function of no arguments or
-NIL, and closes the popup unless STAYS-P. TICK is a function that returns true if the row is ticked,
-or NIL if the row has no box to tick."
+  "A row of the popup, with TEXT. A click on the row calls ACTION, NIL or a function of no
+arguments, and closes the popup unless STAYS-P. TICK is NIL if the row has no check box, else a
+function that returns true if the box is ticked."
   (text "" :type string :read-only t)
   (action nil :type (or null function) :read-only t)
   (tick nil :type (or null function) :read-only t)
@@ -90,8 +90,8 @@ or NIL if the row has no box to tick."
                   width height))))
 
 (defun open-popup (window rows x y &optional (opener t))
-  "Open the popup of WINDOW with ROWS and its upper left corner at X, Y. OPENER is the command that
-opens the popup, a symbol, or the menu that is shown, or T."
+  "Open the popup of WINDOW with ROWS and its upper left corner at X, Y. OPENER is what opens it:
+the symbol of a command, the menu to show, or T."
   (let ((popup (window-popup window)))
     (setf (pane-rows popup) rows
           (pane-opener popup) opener

@@ -66,8 +66,8 @@ transcript is shorter than a page."
             when (<= rows above) return number))))
 
 (defun possible-last-line (pane last)
-  "Return the number of the line to show at the bottom of PANE: LAST, or the first number above it
-with which the page is full. Return NIL for the newest line."
+  "Return the number of the line to show at the bottom of PANE: LAST or, if the page would not be
+full, the least number that fills it. Return NIL for the newest line."
   (let ((oldest (last-line-of-first-page pane)))
     (and oldest
          (< last (transcript-newest (pane-transcript pane)))

@@ -54,7 +54,8 @@ arguments, after each change."
   (incf (transcript-newest transcript)))
 
 (defun add-to-last-line (transcript part)
-  "Add PART to the last line of TRANSCRIPT. A return character in PART erases the line before it."
+  "Add PART to the last line of TRANSCRIPT. A return character in PART erases all before it in the
+line."
   (let ((return (position #\Return part :from-end t)))
     (when return (setf (first (transcript-lines transcript)) ""))
     (when (< +longest-line+ (length (first (transcript-lines transcript))))

@@ -12,8 +12,8 @@ the measured rate in ticks per second, or NIL if it is unknown."
   (reached nil :type (or null real) :read-only t))
 
 (defstruct (rate-sample (:copier nil))
-  "What the last look at a run found. LAST-TICK is the tick, and CALLS the number of calls of user
-code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per second, or NIL."
+  "The results of the last look at a run. LAST-TICK is the tick, and CALLS the number of calls of
+user code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per second, or NIL."
   (last-tick 0 :type fixnum)
   (calls nil :type (or null fixnum))
   (tick 0 :type fixnum)

@@ -67,7 +67,7 @@ Y, return the selected one, else a robot with its middle there, else the smalles
         (first subjects))))
 
 (defun draggable-now-p (pane subject)
-  "True if SUBJECT can be dragged in PANE: a thing or a robot, while time stands still."
+  "True if SUBJECT can be dragged in PANE: it is a thing or a robot, and time stands still."
   (and (typep subject '(or thing-image robot-image))
        (let ((simulation (window-simulation (window-of pane))))
          (or (paused-p simulation) (not (live-p simulation)) (idle-p simulation)))))

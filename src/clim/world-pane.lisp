@@ -27,8 +27,8 @@
 (defun view-map (pane) (window-map (window-of pane)))
 
 (defun pane-margins (pane)
-  "Return how many pixels PANE has left of, above and below its map, for coordinates and the scale."
-  (view-strip-widths (view-map pane) (window-layers (window-of pane))))
+  "Return the left, top and bottom margins of PANE in pixels. They hold coordinates and scale bar."
+  (view-edges (view-map pane) (window-layers (window-of pane))))
 
 (defun view-box (pane)
   "Return the box (left top right bottom) of the map in PANE, without coordinates and scale bar."

@@ -129,7 +129,7 @@ which keys are down: this answer has 40 bytes."
     (error () nil)))
 
 (defun library-fault-message (condition clx-fails-p)
-  "Return the message on CONDITION, an error of CLX if CLX-READ-FAILS-P is true, else of McCLIM."
+  "Return the message on CONDITION, an error of CLX if CLX-FAILS-P is true, else of McCLIM."
   (format nil "No window: ~A fails on SBCL ~A, though the X server ~A answers (~A).~@[ ~A~]"
           (ars-magna.clx:library-text (if clx-fails-p "CLX" "McCLIM"))
           (lisp-implementation-version)

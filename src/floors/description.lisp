@@ -48,7 +48,8 @@ the probabilities above which a pixel is OCCUPIED and below which it is FREE; an
     number))
 
 (defun resolution-in (file entry)
-  "Return the width of a pixel in metres, from ENTRY. Signals UNUSABLE-FLOOR outside 1e-9 to 1e9."
+  "Return the width of a pixel in metres, from ENTRY. Signals UNUSABLE-FLOOR if it is not in 1e-9 to
+1e9."
   (let* ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9")
          (number (number-in-entry file entry 0 1000000000 expected)))
     (unless (< 1d-9 (double number)) (reject-entry file entry expected))

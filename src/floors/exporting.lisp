@@ -17,8 +17,8 @@
                        (append (rest (coerce names 'list)) (defined-names *substances*)))))))
 
 (defun unknown-wall-test (map unknown)
-  "Return a predicate of the substance index and parameter of walls of MAP. It is true of walls that
-EXPORT-MAP with UNKNOWN writes as unknown. Signals UNKNOWN-NAME."
+  "Return a function of the substance index and parameter of a wall of MAP. It returns true if
+EXPORT-MAP with UNKNOWN writes the wall as unknown. Signals UNKNOWN-NAME."
   (if (member unknown '(nil :walls))
       (constantly nil)
       (destructuring-bind (name &optional parameter) (ensure-list unknown)
@@ -40,7 +40,7 @@ EXPORT-MAP with UNKNOWN writes as unknown. Signals UNKNOWN-NAME."
                   +occupied+))))))
 
 (defun write-image (grid out)
-  "Write GRID as PGM in bytes to OUT, a stream whose characters are octets."
+  "Write GRID as binary PGM to OUT, a stream whose characters are octets."
   (format out "P5~%~D ~D~%255~%" (grid-width grid) (grid-height grid))
   (let ((row (make-string (grid-width grid))))
     (dotimes (y (grid-height grid))
@@ -72,7 +72,7 @@ EXPORT-MAP with UNKNOWN writes as unknown. Signals UNKNOWN-NAME."
                                                                           origin))))
 
 (defun write-floor-file (file format function &key (check #'identity))
-  "Call CALL-REPLACING-FILE. Signals UNUSABLE-FLOOR if FILE cannot be written."
+  "Replace FILE by what FUNCTION writes. Signals UNUSABLE-FLOOR if FILE cannot be written."
   (handler-case (call-replacing-file function file :external-format format :check check)
     (unusable-floor (condition) (error condition))
     (error (condition)

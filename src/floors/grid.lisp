@@ -283,8 +283,8 @@ Pair each row of the path with its column on the path, so that some rows change 
 
 (defun fewest-lines (grid needed allowed)
   "Return a list of as few straight lines as possible. They cover all cells of GRID with a state in
-the list NEEDED, and no cell with a state outside the list ALLOWED. A line is two ends (x y).
-Lines along rows come first, from the top, then lines along columns."
+the list NEEDED, and no cell with a state outside the list ALLOWED. A line is a list of its two ends
+(x y). Lines along rows come first, from the top, then lines along columns."
   (let* ((rows (find-runs grid allowed :rows)) (columns (find-runs grid allowed :columns))
          (cover (find-maximum-matching (make-cover rows columns (states-mask needed))))
          (taken (covering-columns cover)) (width (grid-width grid)))

@@ -71,8 +71,8 @@ three double-floats. The point may be outside MAP. Signals WRONG-ARGUMENT and UN
             (if given parameter (whole-as-integer (substance-parameter substance)))))))
 
 (defun map-name-for (name file)
-  "Return the name of the map from FILE: the symbol NAME or, if NAME is NIL, a symbol of the current
-package made of the letters and digits of the name of FILE, with dashes for other characters."
+  "Return the name of the map from FILE: NAME or, if NAME is NIL, a symbol of the current package.
+The symbol is the name of FILE, with dashes for other characters than letters and digits."
   (let* ((words (substitute-if #\Space (complement #'alphanumericp)
                                (string-upcase (or (pathname-name file) ""))))
          (own (substitute #\- #\Space (one-line (string-trim " " words)))))
@@ -85,7 +85,7 @@ package made of the letters and digits of the name of FILE, with dashes for othe
     (or name (intern own))))
 
 (defun cell-side-in-pixels (description pixels cell)
-  "Return the width of a cell in pixels: PIXELS, or CELL metres in pixels, or 1 if both are NIL."
+  "Return the width of a cell in pixels: PIXELS, CELL converted from metres, or 1 if both are NIL."
   (check-option :pixels (or (null pixels) (whole-p pixels 1 32767)) pixels
                 "the width of a cell in pixels, an integer from 1 to 32767")
   (check-option :cell (or (null cell) (and (sane-number-p cell) (plusp cell) (null pixels))) cell
@@ -143,8 +143,8 @@ unknown cells. WALLS and UNKNOWN are lists (substance parameter)."
 (addition imported-map-form)
 (defun imported-map-form (file &key name pixels cell (share 0) (substance 'bricks)
                                  (unknown :walls) clauses cache (limit +most-pixels+))
-  "Return, for arguments of IMPORT-MAP, the DEFMAP form that IMPORT-MAP would evaluate and the plist
-that it would return. Define nothing. Signals the same errors as IMPORT-MAP."
+  "Return the DEFMAP form that IMPORT-MAP would evaluate for the same arguments, and the plist that
+it would return. Define nothing. Signals the same errors as IMPORT-MAP."
   (check-argument imported-map-form file (typep file '(or string pathname)) "the name of a file")
   (check-argument imported-map-form limit (whole-p limit 1 1000000000) "an integer from 1 to 1e9")
   (check-option :share (probability-p share) share "a number from 0 to 1")

@@ -157,7 +157,7 @@ there are more than LIMIT pixels."
                                       position" name))))
 
 (defun join-pieces (octets pieces)
-  "Return the concatenated PIECES of OCTETS, a list of pairs (start . end), the last piece first."
+  "Return PIECES of OCTETS, joined. PIECES are pairs (start . end), the last piece first."
   (let* ((size (loop for (start . end) in pieces sum (- end start)))
          (joined (make-octets size)) (place size))
     (loop for (start . end) in pieces

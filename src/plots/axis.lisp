@@ -14,7 +14,7 @@ logarithms. MARKS are lists (value line...) with lines of text, vertical if UPWA
   (upward-p nil :type boolean))
 
 (defun scaled-value (value log-p)
-  "Return VALUE or, if LOG-P, its decimal logarithm. Signals WRONG-ARGUMENT if it has none."
+  "Return VALUE or, if LOG-P, its decimal logarithm. Signals WRONG-ARGUMENT if VALUE has none."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
                            "a number above 0 on a log axis; omit :log-x or give it as a string")
@@ -50,7 +50,7 @@ equal, the limits are at least LEAST-MARK-STEP farther out on each side."
 
 (defun padded-range (low high from to inset)
   "Return the numbers at the ends of an axis between the pixels FROM and TO. LOW and HIGH are INSET
-pixels from the ends of this axis. INSET is reduced to a sixth of the axis if it is more."
+pixels from the ends of this axis. An INSET above a sixth of the axis counts as a sixth."
   (let* ((span (rational (- to from)))
          (inset (min (rational inset) (/ span 6)))
          (margin (* (- high low) (/ inset (- span (* 2 inset))))))
@@ -64,7 +64,7 @@ pixels from the ends of this axis. INSET is reduced to a sixth of the axis if it
   (reduce #'max (axis-marks axis) :key #'mark-width :initial-value 0))
 
 (defun marks-fit-p (axis least)
-  "True if the mark texts of AXIS do not overlap. Each counts as at least LEAST pixels wide."
+  "True if the mark texts of AXIS do not overlap. Each text counts as at least LEAST pixels wide."
   (loop for (mark next) on (axis-marks axis)
         while next
         always (<= (+ 12 (/ (+ (max least (mark-width mark)) (max least (mark-width next))) 2))

@@ -8,7 +8,8 @@
 ;;; give the same picture to the last byte.
 
 (defun as-rational (value)
-  "Return VALUE, a finite number, as a rational: 0.1 as 1/10; NIL for NIL. Signals WRONG-ARGUMENT."
+  "Return VALUE, a finite number or NIL, as a rational (0.1 as 1/10) or NIL. Signals
+WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
                   "a finite number, or NIL if there is none")
   ;; For denormalized floats, SBCL's RATIONALIZE returns values of other floats.

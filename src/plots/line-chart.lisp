@@ -58,7 +58,7 @@ text; Y, LOW and HIGH may be NIL."
 ;;; Series are drawn side by side, so that their intervals do not hide each other.
 
 (defun least-gap (places)
-  "Return the least distance between two of PLACES, in pixels, or 60 if there are not two."
+  "Return the least distance between two of PLACES, in pixels, or 60 if there are fewer than two."
   (let ((sorted (sort (copy-list places) #'<)))
     (loop for (place next) on sorted
           while next
@@ -180,12 +180,12 @@ among SERIES. PLACES are the positions of points on an axis that begins at the p
                      width height)
   "Return a chart of SERIES as an SVG document. Each series is a list (name point...), each point a
 list (x y) or (x y low high): the value Y at X, with the interval from LOW to HIGH. The X of all
-points are numbers, joined by lines, or strings and symbols. Unknown values are NIL. If PERCENT is
-true, Y are rates, shown as per cent from 0 to 100. RANGE is a list (low high) that the vertical
-axis must include. If LOG-X is true, the scale of X is logarithmic. TITLE, SUBTITLE, X-LABEL,
-Y-LABEL and LEGEND-TITLE, which is above the names of the series, are strings or NIL. WIDTH and
-HEIGHT are pixels, by default 720 and 440; the chart is larger if its texts need more room. If all
-names are NIL, there is no legend. Signals WRONG-ARGUMENT."
+points are either numbers (lines join the points) or strings and symbols. Unknown values are NIL. If
+PERCENT is true, Y are rates, shown as per cent from 0 to 100. RANGE is a list (low high) that the
+vertical axis must include. If LOG-X is true, the scale of X is logarithmic. TITLE, SUBTITLE,
+X-LABEL, Y-LABEL and LEGEND-TITLE, which is above the names of the series, are strings or NIL. WIDTH
+and HEIGHT are pixels, by default 720 and 440; the chart is larger if its texts need more room. If
+all names are NIL, there is no legend. Signals WRONG-ARGUMENT."
   (declare (ignore title subtitle x-label y-label legend-title width height))
   (check-argument line-chart range (typep range '(or null (cons real (cons real null))))
                   "a list of two numbers, or NIL")

@@ -40,11 +40,11 @@
       (funcall function))))
 
 (defmacro with-series-look ((index width) &body body)
-  "Run BODY drawing lines WIDTH pixels wide in the colour and dashes of the series INDEX."
+  "Run BODY. It draws lines WIDTH pixels wide, with the colour and dashes of the series INDEX."
   `(call-with-series-look (lambda () ,@body) ,index ,width))
 
 (defmacro with-ink ((color &optional (width 1)) &body body)
-  "Run BODY drawing solid lines WIDTH pixels wide in COLOR."
+  "Run BODY. It draws solid lines WIDTH pixels wide in COLOR."
   `(with-gcontext (draw-gcontext* :foreground ,color :line-width ,width :line-style :solid)
      ,@body))
 
@@ -113,8 +113,8 @@
 
 (defun break-position (word count)
   "Return the position at which to break WORD. The first COUNT characters of WORD fit in a line. The
-position is after the last dash, slash or similar character among them, except the first character.
-Without such a character the position is COUNT."
+position is after the last dash, slash or the like among them, but not after the first character.
+Without such a character it is COUNT."
   (let ((place (position-if (lambda (char) (find char "-/_,;:)"))
                             word :end count :from-end t)))
     (if (and place (plusp place)) (1+ place) count)))
