@@ -186,8 +186,7 @@ pixels high. The column of sections is DOWN pixels high."
                                    (+ left plan) top column down))))
 
 (defun transcript-places (width top bottom)
-  "Return the places of the transcript and of the splitter above it. The splitter begins at TOP, and
-the transcript ends at BOTTOM."
+  "Return the places, from TOP to BOTTOM, of a splitter and the transcript below it."
   (let ((low (+ top +splitter-width+)))
     (cons (list 'low-splitter 0 top width +splitter-width+)
           (section-and-title-places 'transcript 0 low width (- bottom low +title-height+)))))

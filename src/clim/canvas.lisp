@@ -204,6 +204,5 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
     (cl:map 'list #'cdr (stable-sort found #'< :key #'car))))
 
 (defun subject-at (subjects x y)
-  "Return the smallest object that was drawn at X, Y or close to that point, or NIL. SUBJECTS are
-lists (object left top right bottom) of what was drawn on a canvas."
+  "Return the smallest object of SUBJECTS drawn at X, Y or close to that point, or NIL."
   (first (subjects-at subjects x y)))

@@ -114,8 +114,7 @@ start), one for each program that receives it in pieces. START is where the next
   (xlib:change-property window property (list (length (offered-text-octets offered))) :incr 32))
 
 (defun send-next-piece (offered window property)
-  "If a program waits for it, put the next piece of OFFERED, or an empty end, into PROPERTY of
-WINDOW."
+  "Put the next piece of OFFERED into PROPERTY of WINDOW if a program waits. The last is empty."
   (let ((transfer (find-if (lambda (transfer)
                              (and (xlib:window-equal window (first transfer))
                                   (eq property (second transfer))))

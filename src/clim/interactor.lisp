@@ -22,7 +22,7 @@
           count))
 
 (defun shown-input-line (conversation)
-  "Return a list of label, text and cursor position of the input line of CONVERSATION, or NIL."
+  "Return label, text and cursor position of the input line of CONVERSATION, as a list, or NIL."
   (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
     (and line (ars-magna.cli:drawn-line-shown line))))
 

@@ -27,8 +27,8 @@
 (defconstant +arrow-step+ 60 "The number of pixels that an arrow key moves the view.")
 
 (defun arrow-key-offset (key-name)
-  "Return two values: the pixels by which the key KEY-NAME moves the view right, and down. Return
-NIL if KEY-NAME is no arrow key."
+  "Return two values, the pixels by which the arrow key KEY-NAME moves the view right and down; or
+NIL."
   (case key-name
     (:left (values (- +arrow-step+) 0))
     (:right (values +arrow-step+ 0))
@@ -170,8 +170,7 @@ Return two values, elements of *DEAD-KEYS* or NIL: one for the key that was wait
     (values before now)))
 
 (defun events-after-dead-key (event)
-  "Combine a dead key with the character after it: return a list of the events to handle in place of
-the key press EVENT."
+  "Return a list of events to handle for the key press EVENT, with dead keys already combined."
   (let ((character (clim:keyboard-event-character event)))
     (multiple-value-bind (before now)
         (update-dead-key (clim:keyboard-event-key-name event) character)

@@ -73,8 +73,7 @@ per inch. An unknown argument is NIL."
   (clamp (round (or resolution 96) 96) 1 (greatest-magnification width height)))
 
 (defun set-magnification (window magnification)
-  "Set the magnification of WINDOW to MAGNIFICATION screen pixels per window pixel. If it is too
-small or too large, say so in WINDOW."
+  "Set the magnification of WINDOW. If MAGNIFICATION is too small or too large, say so in WINDOW."
   (cond ((< magnification 1) (write-in-window window "The window is at its smallest size: smaller ~
                                                       letters could not be read.~%"))
         ((< (multiple-value-call #'greatest-magnification (screen-size (window-layout window)))

@@ -46,7 +46,7 @@ format string for the camera's number, and LINE is one for the number and ARGUME
           collect (designator-image-number designator)))
 
 (defun appearance-text (image)
-  "Return the looks of the thing of IMAGE as a specification that the prompt can read."
+  "Return the looks of IMAGE's thing as a specification that the prompt can read."
   (let ((color (assoc :color (thing-image-attributes image))))
     (if color (format nil "((:color ~A))" (text-as-typed (second color))) "()")))
 
@@ -111,8 +111,7 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
            (robot-image-hands (window-robot window))))
 
 (defun insert-offers (hands bins title)
-  "Return the menu entries to put each of HANDS into each open bin of BINS. TITLE is a format string
-for the numbers of hand and bin."
+  "Return entries to put HANDS into open BINS. TITLE is a format string for the two numbers."
   (loop for hand in hands
         append (loop for bin in bins
                      unless (or (bin-image-closed-p bin) (hand-image-location hand))

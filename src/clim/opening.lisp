@@ -304,9 +304,8 @@ comes first. Other windows are left out while their prompts are in a trial or fo
       (ars-magna.cli:announce-run (window-session window) simulation name))))
 
 (defun open-window (robot)
-  "Show ROBOT in a window; raise and return the window. The first that exists is used: the window of
-ROBOT, one of its trial or fork, one of a finished run, a new one. Signals MISUSE if there is no X
-server."
+  "Show ROBOT in a window; raise and return it. Use the first of: ROBOT's window, one of its trial
+or fork, one of a finished run, a new one. Signals MISUSE if there is no X server."
   (let ((window (window-to-show-robot robot)))
     (cond ((null window) (open-new-window robot))
           (t (unless (window-shows-p window (robot-name robot) (robot-simulation robot))

@@ -25,8 +25,7 @@
         (show-description-at pane x y)))))
 
 (defun clear-description (window)
-  "Clear the description in the status strip of WINDOW, because the mouse has left the described
-object or the object has moved."
+  "Clear the description of the object under the mouse in the status strip of WINDOW."
   (setf (window-pointed window) nil
         (window-hint window) ""))
 

@@ -206,8 +206,7 @@ window has a title and the mouse shows what things are."
     (and snapshot (mapcar #'robot-image-name (snapshot-robots snapshot)))))
 
 (defun robot-rows (window)
-  "Return the rows of the menu of robots. A click on a row makes the prompt command that robot, and
-the window shows the same robot."
+  "Return the rows of the menu that chooses the robot to command at the prompt and to show."
   (flet ((robot-row (name)
            (make-row (format nil "~A" name)
                      :tick (lambda () (same-name-p name (shown-robot-name window)))

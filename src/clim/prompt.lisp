@@ -81,7 +81,7 @@ line, and OVER when the user leaves the prompt."
                        console over)))
 
 (defun run-conversation (conversation simulation robot-name)
-  "Read and run lines until the user leaves. Record in CONVERSATION if its thread ends otherwise."
+  "Run lines until the user leaves. Mark CONVERSATION as lost if its thread ends otherwise."
   (let ((lost-p t))
     (unwind-protect
          (progn (ars-magna.cli:run-additional-session (conversation-session conversation)

@@ -35,8 +35,8 @@
   "The largest number of characters of a line. A longer line is continued as another line.")
 
 (defstruct (transcript (:constructor make-transcript (news)) (:copier nil))
-  "The text of a window, as lines, newest first. NEWS is a function that is called, with no
-arguments, after each change."
+  "A window's text: lines, newest first. NEWS, a function of no arguments, is called on each
+change."
   (news nil :type function :read-only t)
   (lock (make-lock "transcript") :read-only t)
   (lines (list "") :type list)
@@ -54,8 +54,7 @@ arguments, after each change."
   (incf (transcript-newest transcript)))
 
 (defun add-to-last-line (transcript part)
-  "Add PART to the last line of TRANSCRIPT. A return character in PART erases all before it in the
-line."
+  "Add PART to the last line of TRANSCRIPT. A return character in PART erases the text before it."
   (let ((return (position #\Return part :from-end t)))
     (when return (setf (first (transcript-lines transcript)) ""))
     (when (< +longest-line+ (length (first (transcript-lines transcript))))

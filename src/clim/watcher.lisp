@@ -67,8 +67,7 @@ user code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per
       (eq :paused (ars-magna.cli:trial-or-fork-pace simulation))))
 
 (defun time-state (simulation sample)
-  "Return two values: a keyword of STATE-WORDS, which says how time passes in SIMULATION; and a text
-to write after these words, or NIL."
+  "Return a keyword of STATE-WORDS for SIMULATION, and a text to write after these words, or NIL."
   (let ((busy (blocking-code-text simulation sample)))
     (cond ((and (simulation-over simulation)
                 (not (eq :ended (ars-magna.cli:trial-or-fork-pace simulation))))
@@ -130,7 +129,7 @@ to write after these words, or NIL."
 (defconstant +seconds-after-picture+ 0.028
   "The seconds from painting a picture to requesting the next snapshot.")
 (defconstant +seconds-between-checks+ 0.5
-  "The seconds between two checks for changes between ticks.")
+  "The interval, in seconds, at which to check for changes between ticks.")
 
 (defstruct (watcher (:constructor make-watcher (robot news &optional (gone #'values)))
                     (:copier nil))

@@ -79,7 +79,7 @@
                               (ars-magna.cli:run-description simulation)))))))
 
 (defun make-robot-window (watcher &rest options)
-  "Return a new window for the robot of WATCHER, without showing it. OPTIONS are CLIM's options for
+  "Return a new window, not yet visible, for the robot of WATCHER. OPTIONS are CLIM's options for
 frames, and :layers, :color-p and :usual-magnification."
   (let ((window (apply #'clim:make-application-frame 'robot-window
                        :pretty-name (window-title (watcher-robot watcher))

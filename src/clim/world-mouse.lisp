@@ -47,8 +47,8 @@
           reach))))
 
 (defun robots-at-middle (pane subjects x y)
-  "Return the robots among SUBJECTS whose middle is close to X, Y of PANE. The robot whose details
-the window shows comes first."
+  "Return the robots among SUBJECTS with their middles close to X, Y of PANE, the shown robot
+first."
   (let ((robots (remove-if-not (lambda (subject)
                                  (and (typep subject 'robot-image)
                                       (at-robot-middle-p pane subject x y)))
@@ -100,7 +100,7 @@ Y, return the selected one, else a robot with its middle there, else the smalles
                                            :line-thickness 2)))))
 
 (defgeneric subject-moving-line (subject x y window)
-  (:documentation "Return the prompt line of WINDOW that moves SUBJECT to X, Y, which are texts.")
+  (:documentation "Return the prompt line that moves SUBJECT in WINDOW to X, Y. X and Y are texts.")
   (:method ((image thing-image) x y window)
     (declare (ignore window))
     (format nil "(move-thing ~A ~A ~A)" (find-thing-form-text image) x y))

@@ -176,7 +176,7 @@ true when the awaited input has arrived."
     (if (eq end :come) nil end)))
 
 (defun wait-unless-input-arrived (wait display timeout)
-  "Call WAIT, CLX's function, unless the awaited input has arrived; in that case return :COME."
+  "If the awaited input has arrived, return :COME. Otherwise call WAIT, a function of CLX."
   (if (funcall *input-arrived-p*) :come (funcall wait display timeout)))
 
 (wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-x-server-input)

@@ -48,8 +48,7 @@ the probabilities above which a pixel is OCCUPIED and below which it is FREE; an
     number))
 
 (defun resolution-in (file entry)
-  "Return the width of a pixel in metres, from ENTRY. Signals UNUSABLE-FLOOR if it is not in 1e-9 to
-1e9."
+  "Return the width of a pixel in metres, from ENTRY. Signals UNUSABLE-FLOOR if out of range."
   (let* ((expected "how many metres a pixel is wide, more than 1e-9 and at most 1e9")
          (number (number-in-entry file entry 0 1000000000 expected)))
     (unless (< 1d-9 (double number)) (reject-entry file entry expected))
@@ -133,7 +132,7 @@ the probabilities above which a pixel is OCCUPIED and below which it is FREE; an
                      "it is an image; (import-map FILE) reads the .yaml that names it"))
 
 (defun check-description-file (file)
-  "Signal UNUSABLE-FLOOR unless the size and the first bytes of FILE may be those of a description."
+  "Signal UNUSABLE-FLOOR if FILE, by its size or its first bytes, is no description."
   (check-readable file)
   (let ((advice (advice-on-file file :floor)))
     (when advice (reject-floor file nil "~A" advice)))

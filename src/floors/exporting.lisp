@@ -102,7 +102,6 @@ NIL if FILE is no valid description."
      (resolve-link (image-path file (required-entry file "image" entries))))))
 
 (defun missing-or-empty-file-p (path)
-  "True if the file PATH does not exist or is empty."
   (let ((there (probe-file path)))
     (or (null there)
         (ignore-errors (and (regular-file-p there) (zerop (file-size there)))))))

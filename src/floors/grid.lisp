@@ -250,7 +250,7 @@ mate in the next layer. Return NIL if there is no such column."
                      (return column))))))))
 
 (defun find-mate (cover row)
-  "Find a mate for ROW, which has none, on a path through the layers of this round, if there is one.
+  "If possible, find a mate for ROW, which has none, on a path through the layers of this round.
 Pair each row of the path with its column on the path, so that some rows change their mates."
   (let ((way (list (cons row nil))) (column-mate (cover-column-mate cover)) (done nil))
     (loop until (or done (null way))

@@ -76,7 +76,7 @@
     (setf (image-input-position input) position)))
 
 (defun next-number (input what)
-  "Return the next number in INPUT, of at most 9 digits. WHAT is the name of the number in errors."
+  "Return the next number in INPUT, of at most 9 digits. WHAT names the number in errors."
   (skip-blanks input)
   (let ((octets (image-input-octets input)) (start (image-input-position input)) (number 0))
     (declare (type octets octets) (type fixnum start) (type (unsigned-byte 32) number))

@@ -36,7 +36,6 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
                 control arguments *conversion-command*))
 
 (defun reject-damaged-png (input control &rest arguments)
-  "Signal UNUSABLE-FLOOR with the message that the PNG file INPUT is damaged."
   (reject-image input "the image is damaged: ~?; copy or save it again" control arguments))
 
 ;;; Numbers and check sums.
@@ -157,7 +156,7 @@ there are more than LIMIT pixels."
                                       position" name))))
 
 (defun join-pieces (octets pieces)
-  "Return PIECES of OCTETS, joined. PIECES are pairs (start . end), the last piece first."
+  "Return PIECES of OCTETS, joined in order. PIECES are pairs (start . end), the last piece first."
   (let* ((size (loop for (start . end) in pieces sum (- end start)))
          (joined (make-octets size)) (place size))
     (loop for (start . end) in pieces

@@ -151,7 +151,6 @@ PNG-PIXEL-OCTETS filler octets, then the octets of the row's pixels. Signals UNU
   (not (or (< 1 (png-channels png)) (png-palette-p png) (png-transparency png))))
 
 (defun greatest-sample (png rule)
-  "Return the greatest possible sample of PNG. RULE says how alpha counts."
   (cond ((plain-grey-p png) (1- (ash 1 (png-depth png))))
         ((eq :averaged rule) 1020)
         (t 765)))
@@ -242,8 +241,7 @@ octets. A pixel has CHANNELS channels of OCTETS octets each."
                                 rule)))))
 
 (defun read-png (input limit mode)
-  "Return the PNG image in INPUT, of at most LIMIT pixels, as a grey image. MODE says how alpha
-counts. Signals UNUSABLE-FLOOR."
+  "Return the PNG in INPUT, of at most LIMIT pixels, as a grey image. Signals UNUSABLE-FLOOR."
   (let* ((png (read-chunks input limit)) (rule (alpha-treatment png mode)))
     (check-compressed-size png (* (png-height png) (1+ (png-row-size png))))
     (let ((samples (make-array (* (png-width png) (png-height png))

@@ -8,8 +8,7 @@
 ;;; give the same picture to the last byte.
 
 (defun as-rational (value)
-  "Return VALUE, a finite number or NIL, as a rational (0.1 as 1/10) or NIL. Signals
-WRONG-ARGUMENT."
+  "Return the number VALUE as a rational: 0.1 as 1/10. Return NIL for NIL. Signals WRONG-ARGUMENT."
   (check-argument chart value (or (null value) (rationalp value) (finite-p value))
                   "a finite number, or NIL if there is none")
   ;; For denormalized floats, SBCL's RATIONALIZE returns values of other floats.
@@ -43,7 +42,6 @@ WRONG-ARGUMENT."
       text))
 
 (defun round-to-digits (value digits)
-  "Return VALUE, a rational, rounded to DIGITS significant digits."
   (if (zerop value)
       0
       (let ((unit (expt 10 (- (decimal-exponent value) digits -1))))

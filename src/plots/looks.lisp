@@ -150,7 +150,6 @@ between words. A word longer than a line is broken after a dash or the like, els
              append (wrap-words (split-text paragraph #'space-p) width size bold-p))))
 
 (defun text-lines-width (lines &optional (size +text-size+) bold-p)
-  "Return the width of the longest of LINES, in pixels."
   (reduce #'max lines :key (lambda (line) (text-width line size bold-p)) :initial-value 0))
 
 (defun text-lines-height (lines) (* +chart-line-height+ (length lines)))
@@ -198,8 +197,8 @@ between words. A word longer than a line is broken after a dash or the like, els
 
 (defun save-chart (file chart)
   "Save CHART, an SVG document from a function such as LINE-CHART, in FILE, replacing it. Return the
-truename of FILE. The name of FILE ends in .svg or, if the program rsvg-convert is installed, .png.
-Signals WRONG-ARGUMENT, and MISUSE for .png without rsvg-convert."
+truename of FILE. The name of FILE must end in .svg or, if the program rsvg-convert is installed, in
+.png. Signals WRONG-ARGUMENT, and MISUSE for .png without rsvg-convert."
   (check-argument save-chart chart (stringp chart) "an SVG document from a function such as
 LINE-CHART")
   (save-svg chart file (picture-kind 'save-chart file)))
