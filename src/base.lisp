@@ -2,5 +2,5 @@
 
 (uiop:define-package :ars-magna.base
   (:documentation "Names for programs that add kinds of objects, parameters or commands. It exports
-all names of the four lowest packages. The simulator's own layers use these directly.")
+all names of the four lowest packages. The simulator's own layers use those packages.")
   (:use-reexport :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying))

@@ -40,7 +40,7 @@
 (defun join-editors ()
   "Make the inspectors of SLIME and SLY show robots, things, maps and the like as DESCRIBE does,
 with descriptions of their slots. Loading the simulator calls this function. Call it again if a
-server, SWANK or SLYNK, was loaded later. Return the names of the servers' packages found."
+server, SWANK or SLYNK, was loaded later. Return the names of the found servers' packages."
   (loop for inspector in (inspectors)
         collect (package-name (symbol-package inspector))
         unless (inspector-extended-p inspector)
@@ -120,7 +120,7 @@ function. Return nothing. Signals MISUSE if no editor is connected."
 (setf *editor-gone-p* 'editor-gone-p)
 
 (defun note-editor-gone (connection)
-  "Make threads that wait for an answer from CONNECTION, which is closed, continue in another way."
+  "CONNECTION is closed: end the inquiries that wait for an answer from this connection."
   (end-inquiries (lambda () (own-connection-p connection))))
 
 (defun watch-editors (&rest ignored)

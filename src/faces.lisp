@@ -8,7 +8,7 @@
 (in-package :ars-magna.faces)
 
 (defun document-addition (symbol)
-  "Append to all documentation of SYMBOL the remark that SYMBOL is an addition to the manual."
+  "Say in all documentation of SYMBOL that SYMBOL is an addition to the manual."
   (dolist (kind '(function variable type))
     (let ((text (documentation symbol kind)))
       (when text
@@ -22,7 +22,6 @@
   (and (fboundp `(setf ,symbol)) (not (settable-p symbol))))
 
 (defun rejecting-setter (symbol)
-  "Return the SETF function of SYMBOL, which cannot be set: a function that signals MISUSE."
   (lambda (value object)
     (declare (ignore value object))
     (reject-use "~(~A~) cannot be set. To change a run, use commands, or functions such as ~
@@ -36,7 +35,7 @@
     (intern name face)))
 
 (defun ensure-read-only-reader (symbol face)
-  "Return a symbol of the package FACE that names the function of SYMBOL, but refuses SETF."
+  "Return a symbol of FACE, a package, that names SYMBOL's function. Its SETF signals MISUSE."
   (let ((reader (ensure-own-symbol face (symbol-name symbol))))
     (setf (fdefinition reader) (fdefinition symbol)
           (documentation reader 'function) (documentation symbol 'function)
@@ -65,7 +64,6 @@ extended versions."))
   "The packages for users, with their documentation. Each exports the symbols marked for it.")
 
 (defun export-all-marked-names ()
-  "Make the packages ARS and NISP export the symbols that are marked for them."
   (loop for (face . documentation) in *public-packages*
         do (unlock-package (ensure-public-package face documentation))
            (dolist (symbol (public-symbols face))

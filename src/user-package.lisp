@@ -94,7 +94,6 @@ symbols. If several packages extend a name, the last one is used. The names SETT
     (reject-clause "define-user-package" name "a name, such as :my-house, for the package")))
 
 (defun package-form (name options environment)
-  "Return the macroexpansion that defines the package NAME with OPTIONS of DEFINE-USER-PACKAGE."
   (macroexpand-1 `(defpackage ,name
                     ,@(user-package-options (definition-title "define-user-package" name) options))
                  environment))

@@ -40,7 +40,7 @@
   (results '() list "the specifications of the further arguments of the continuation" :addition)
   (errors '() list "the command's own error codes; any can also end with :INTERRUPT" :addition)
   (expected '() list
-            "the error codes of the command, keywords, that do not count as failures" :export)
+            "keywords: the command's error codes that do not count as failures" :export)
   (traits '() list "the traits of the command, keywords of *COMMAND-TRAITS*")
   (echo '() list
         "the names of the results that the continuation also gets after an interruption")
@@ -101,14 +101,14 @@ is :GUARDED, make STEP a step of all users' commands."
   step)
 
 (defmacro define-step (name (operation needs) documentation &body body)
-  "Define the function NAME, a step of OPERATION that runs BODY. It relies on the form NEEDS, such
+  "Define the function NAME, a step of OPERATION that runs BODY. BODY relies on the form NEEDS, such
 as (robot-p (operation-resource operation)). An operation from a file is refused if NEEDS is false."
   `(progn
      (register-step ',name (lambda (,operation) (declare (ignorable ,operation)) ,needs))
      (defun ,name (,operation) ,documentation ,@body)))
 
 (defun check-step (step)
-  "Return GO-ON's argument STEP. Signals an error if simulator code passes it without DEFINE-STEP."
+  "Return STEP, an argument of GO-ON. A step of the simulator without DEFINE-STEP is an error."
   (cond ((get step 'step) step)
         (*loading-simulator-p* (error "~S is not defined by DEFINE-STEP" step))
         (t (register-step step :guarded))))
@@ -117,7 +117,7 @@ as (robot-p (operation-resource operation)). An operation from a file is refused
   (and (get name 'step) (fboundp name) t))
 
 (defun check-step-in-form (form)
-  "Return FORM, a call with a step as its second argument. Check a quoted step at load time."
+  "Return FORM, whose second argument is a step. A quoted step is checked at load time."
   (destructuring-bind (function operation step &rest more) form
     (if (typep step '(cons (eql quote) (cons (and symbol (not null)) null)))
         `(,function ,operation (load-time-value (check-step ,step)) ,@more)

@@ -22,7 +22,6 @@ STORAGE-BIN- becomes BIN- (manual E; the rule is inferred; reading 194)."
     (if entry (rest entry) default)))
 
 (defun command-documentation-text (sentence resource parameters results errors section)
-  "Return the documentation of the function that issues a command."
   (format nil "~A Returns nothing; takes effect in the next tick.~%~@[Arguments: ~{~A~^; ~}.~%~]~
                The continuation gets an error code or NIL, the ~(~A~)~{, ~A~}.~%~
                Error codes: ~{~S, ~}:INTERRUPT.~@[ (Manual ~A.)~]"

@@ -10,7 +10,7 @@
           (destination-name destination)))
 
 (defun insertion-error-formatter (control)
-  "Return a function of an operation that formats CONTROL with the part and the destination's name."
+  "Return a function that formats CONTROL with an operation's part and its destination's name."
   (lambda (operation)
     (format nil control (operation-resource operation)
             (destination-name (first (operation-arguments operation))))))

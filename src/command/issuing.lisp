@@ -59,7 +59,6 @@ position. TOLD lists the names of the arguments."
 ;;; One simulation inside another.
 
 (defun other-run-request-key (world)
-  "Return the key for requests to WORLD from a simulation of another world in this tick."
   (list :asked-elsewhere (world-tick world)))
 
 (defun requested-by-other-run-p (world)
@@ -140,8 +139,8 @@ program has just issued without a continuation: in this tick or, in a live run, 
                        (live-p (world-timeline (robot-world (resource-robot resource))))))))
 
 (defun warn-if-repeating (command resource arguments timeline)
-  "Warn once if a program in a headless run issues COMMAND, a relative turn of RESOURCE by
-ARGUMENTS, again while the same turn is in progress without a continuation. It then starts over."
+  "Warn once if a program in a headless run repeats COMMAND, a relative turn of RESOURCE by
+ARGUMENTS, while the same turn is in progress without a continuation. The turn then starts over."
   (let ((before (resource-event resource)))
     (when (and (operation-p before)
                (eq command (operation-command before))
@@ -213,7 +212,7 @@ it was issued with. Then forget the recorded parameters."
   (setf *recorded-bindings* (remove world *recorded-bindings* :key #'second :test #'eq)))
 
 (defun warn-of-thread-bindings (command world bindings)
-  "Warn once that COMMAND, issued in the live run of WORLD, does not see BINDINGS of this thread."
+  "Warn once that BINDINGS of this thread have no effect on COMMAND in the live run of WORLD."
   (loop for (symbol . value) in bindings
         do (warn-once (list :bound (command-name command)) world
                       (format nil "~(~A~) is carried out in the simulator's thread, where ~(~A~) ~
@@ -237,7 +236,7 @@ it was issued with. Then forget the recorded parameters."
          (not (timeline-passing-p timeline)))))
 
 (defun resource-form (resource)
-  "Return the form that returns RESOURCE, a robot or part, in a run of its robot."
+  "Return a form whose value is RESOURCE, a robot or part, in a run of its robot."
   (let ((name (robot-name (resource-robot resource)))
         (index (and (part-p resource) (part-index resource))))
     (etypecase resource
@@ -248,7 +247,6 @@ it was issued with. Then forget the recorded parameters."
       (part `(robot-part ,name ,(make-keyword (type-of resource)) ,index)))))
 
 (defun how-to-run-text (resource)
-  "Return a text that says how to use RESOURCE in a run."
   (let* ((robot (resource-robot resource)) (name (robot-name robot)) (world (robot-world robot)))
     (cond ((or (null *world*)
                (eq *world* world)

@@ -36,7 +36,7 @@ that the attributes can have; a range begins with its lower end"
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
 (defun designate-sightings (camera sightings)
-  "Return designators for CAMERA's SIGHTINGS that are still true, at most as many as a robot keeps."
+  "Return designators for those of CAMERA's SIGHTINGS that are still true."
   (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
     (remove-if-not #'designator-valid-p (remove nil designators))))
 

@@ -132,7 +132,6 @@ no method, as after UNDEFINE."
     (and (notany #'null things) things)))
 
 (defun manipulation-failure-text (operation)
-  "Return a text that says that the manipulation OPERATION failed and, if known, why."
   (format nil "~A failed~@[: ~A is not local, but objects of manipulations must be. Drive there, ~
                for example with robot-goto-designator, and search again with the type :local~]~@[: ~
                no method fits ~{~A~^, ~}, because the patterns of the methods require other ~

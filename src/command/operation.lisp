@@ -107,7 +107,7 @@ the command that it has interrupted, or NIL"))
     (message-set (command-prefix (operation-command operation)) ": " text)))
 
 (defun queue-failure-message (operation kind code text)
-  "Queue TEXT, a message of KIND, for the end of OPERATION with CODE, and record the failure."
+  "OPERATION has ended with CODE: queue TEXT as a message of KIND, and record the failure."
   (queue-message (make-message kind (list text)
                                :about (command-name (operation-command operation))
                                :told-p (and (operation-continuation operation) t))

@@ -70,7 +70,7 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
 ;;; Matchvars.
 
 (defun bind-matchvar (matchvar key value bindings)
-  "True if MATCHVAR can have VALUE, a value of KEY. The second value is BINDINGS with that binding."
+  "True if MATCHVAR can have VALUE, a value of KEY. Return BINDINGS with MATCHVAR bound as well."
   (let ((binding (assoc matchvar bindings)))
     (cond ((not (or value (can-be-false-p (declared-attribute key)))) (values nil bindings))
           ((null (matchvar-name matchvar)) (values t bindings))

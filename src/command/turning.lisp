@@ -13,7 +13,7 @@ range, else NIL (reading 91)."
         (t (values (double value) nil))))
 
 (defun limit-error-formatter (control parameter)
-  "Return a function of an operation that formats the text CONTROL with the value of PARAMETER."
+  "Return a function that formats the text CONTROL with an operation's value of PARAMETER."
   (lambda (operation)
     (declare (ignore operation))
     (format nil control (symbol-value parameter))))

@@ -52,8 +52,8 @@ camera's track, or NIL if the command is not in progress."
       ((nil)))))
 
 (defun withdraw-command (resource continuation)
-  "At the start of the next tick, interrupt the command of RESOURCE with CONTINUATION, if the
-command is in progress then. A track in the background is in progress, too. Returns nothing."
+  "At the start of the next tick, interrupt the command of RESOURCE that has CONTINUATION, if it is
+in progress then. A track in the background is in progress, too. Returns nothing."
   (post (make-withdrawal continuation (list resource)) resource))
 
 ;; The result of a withdrawal, in a replayed run.

@@ -20,7 +20,6 @@ INITARG. PARSE-CAMERA is such a function for cameras."
     (list kind initarg (double amount))))
 
 (defun map-choices-text (name)
-  "Return a text that lists the maps, for a message about the unknown NAME."
   (let ((names (mapcar #'map-name (all-maps))))
     (if names
         (format nil "a map: ~{~(~A~)~^, ~}~@[; did you mean ~(~A~)?~]"

@@ -125,7 +125,7 @@ thing in a hand is where the hand is."
           (t location))))
 
 (defun denotation-enclosure (designator)
-  "Return the THING-ENCLOSURE of DESIGNATOR's thing, or another robot's hand if that holds it."
+  "Return the THING-ENCLOSURE of DESIGNATOR's thing, or the hand if another robot holds it."
   (let* ((thing (designator-denotation designator)) (location (thing-location thing)))
     (if (and (hand-p location)
              (not (eq (part-robot location) (designator-robot designator))))
@@ -174,7 +174,6 @@ bin or the open space where it was seen. False for places."
 ;;; Giving a robot a designator, and making room for it.
 
 (defun drop-oldest-designator (robot)
-  "Drop the oldest designator of ROBOT that no camera tracks."
   (let ((untracked (remove-if #'tracked-p (live-designators robot))))
     (when untracked
       (drop-designator (first (sort untracked #'< :key #'designator-serial))))))
@@ -182,8 +181,8 @@ bin or the open space where it was seen. False for places."
 (defun add-designator (robot &key (type :non-local) (angle 0d0) (distance 0d0) data denotation
                                   x y location)
   "Add a new designator to ROBOT and return it. DENOTATION is a THING or a PLACE, or NIL for a false
-designator at X, Y. The denotation was seen at DISTANCE metres and at ANGLE to the heading, with
-DATA as its description, in LOCATION, a container or NIL for the open."
+designator at X, Y. The denotation was seen at DISTANCE metres and at ANGLE to the heading, in
+LOCATION, which is a container or NIL. DATA describes the denotation."
   (when (>= (length (robot-designators robot)) *designator-limit*) (drop-oldest-designator robot))
   (let ((designator (make-designator :type type :robot robot :data data :location location
                                      :denotation denotation

@@ -9,7 +9,7 @@
 ;;; name; a fresh simulation makes another by the same blueprint.
 
 (defun blueprint-robot (blueprint)
-  "Return BLUEPRINT's current robot: its variable's value or the one in its map's resident world."
+  "Return BLUEPRINT's current robot: its variable's value, or its robot in the resident world."
   (let* ((name (blueprint-name blueprint)) (value (and (boundp name) (symbol-value name)))
          (map (find-map (blueprint-map blueprint) nil)))
     (cond ((robot-p value) value)
@@ -24,7 +24,7 @@
 (addition find-robot)
 (defun find-robot (name &optional (errorp t))
   "Return the robot named NAME, a symbol or string: the value of the variable of this name. If NAME
-is a robot, return it. If there is none, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
+is a robot, return it. If there is no robot, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
   (if (robot-p name)
       name
       (let ((blueprint (find-blueprint name errorp)))
@@ -115,7 +115,6 @@ outside the map (reading 215)."
         (setf (world-robots world) (remove robot (world-robots world)))))))
 
 (defun remove-robots-named (name reason)
-  "Remove all robots named NAME from the resident worlds of all maps."
   (dolist (world (remove nil (mapcar #'map-resident (all-maps))))
     (dolist (robot (remove name (world-robots world) :key #'robot-name :test-not #'eq))
       (asking ((ensure-timeline world)) (remove-robot robot reason)))))

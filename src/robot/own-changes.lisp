@@ -24,8 +24,8 @@ last interruption at that time. After another interruption the way is no longer 
 (defun publish-way (robot points)
   "Show ROBOT's way through POINTS in pictures, in the layer :PLANNED-WAY. POINTS is a list of PTs
 or lists (x y), as from FIND-WAY; () removes the way. The way is shown until you publish another or
-a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call this, and your programs can.
-ROBOT does not move; digests and journals do not change. Return ROBOT. Signals WRONG-ARGUMENT."
+a command of the robot is interrupted. ROBOT-GO-TO and TRAVEL-TO call PUBLISH-WAY. ROBOT does not
+move; digests and journals do not change. Return ROBOT. Signals WRONG-ARGUMENT."
   (check-argument publish-way robot (robot-p robot) (argument-type-text 'robot robot))
   (check-argument publish-way points
                   (proper-list-of-p (lambda (point) (or (pt-p point) (number-pair-p point))) points)
@@ -57,7 +57,6 @@ way, or if a command of ROBOT has been interrupted since."
       (values foot (abs (complex (- x (first foot)) (- y (second foot))))))))
 
 (defun remaining-points (points x y)
-  "Return the rest of the way through POINTS, from its point nearest to (X,Y)."
   (let ((least nil) (left points))
     (loop for (from . after) on points
           while after

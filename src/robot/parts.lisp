@@ -90,7 +90,7 @@
 
 ;; Parts of another run are not copied.
 (defun copy-robot-object (object robot copier)
-  "OBJECT is ROBOT or ROBOT's. Return COPIER's copy, or OBJECT itself if ROBOT is in another run."
+  "OBJECT is or belongs to ROBOT. Return COPIER's copy, or OBJECT if ROBOT is in another run."
   (if (eq (robot-world robot) (copier-option copier :world))
       (copy-slots object copier)
       object))
@@ -231,7 +231,7 @@ the first vector whose element type fits.")
         (setf parts (remove-if #'here-p parts))))))
 
 (defun robot-resources (robot)
-  "Return a list of all resources of ROBOT, each doing one thing at a time: robot, parts and mind."
+  "Return a list of ROBOT's resources: robot, parts and mind. Each does one thing at a time."
   (append (list robot) (robot-parts robot) (list (robot-mind robot))))
 
 (defun mark-world-unsettled (robot)

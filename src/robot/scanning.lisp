@@ -29,7 +29,7 @@
 
 (defun occupied-cells (world x y angle width count reach)
   "Send COUNT rays from (X,Y) in WORLD, spread over WIDTH radians around ANGLE. Return a list of the
-cells with things on the floor that rays meet within REACH columns and rows (reading 130)."
+cells that rays meet within REACH columns and rows and that hold things on the floor (reading 130)."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 15) reach) (type (unsigned-byte 30) count))
   (let* ((flags (world-flags world)) (map (world-map world))
@@ -99,7 +99,6 @@ things that rays meet within REACH columns and rows."
              (in-sight-p (robot-world robot) (robot-x robot) (robot-y robot) x y)))))
 
 (defun cells-around (robot)
-  "Return a list of the indices of ROBOT's cell and of the cells around it."
   (let ((map (world-map (robot-world robot)))
         (column (floor (robot-x robot))) (row (floor (robot-y robot))))
     (loop for y from (1- row) to (1+ row)

@@ -22,7 +22,6 @@
              "the contents of ~A are not inside it" holder))
 
 (defun check-track (track)
-  "Signal CONTRADICTION if the operation of TRACK is not a valid request."
   (when (track-operation track) (check-request (track-operation track))))
 
 (defun check-camera (camera)

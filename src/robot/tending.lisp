@@ -190,7 +190,6 @@ approach does not count, because the approach itself reports it (reading 112)."
 ;;; The tracks phase.
 
 (defun drop-unreachable-designators (robot)
-  "Drop the local designators of ROBOT that no camera tracks and that are out of reach."
   (let ((designators (robot-designators robot)))
     (loop for number from 0
           while (< number (length designators))
@@ -226,7 +225,7 @@ approach does not count, because the approach itself reports it (reading 112)."
                       (some #'camera-tracking (robot-cameras robot)))))
 
 (defun start-track (camera designator operation)
-  "Make CAMERA track DESIGNATOR. At the end call NOTIFY-TRACK-END with OPERATION (reading 142)."
+  "Make CAMERA track DESIGNATOR. When the track ends, call NOTIFY-TRACK-END (reading 142)."
   (unless (tracked-p designator)
     (let ((world (robot-world (camera-robot camera))))
       (refresh-once designator (world-tick world) (world-dice world :tracking))
