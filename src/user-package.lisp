@@ -40,13 +40,13 @@ symbols. If several packages extend a name, the last one is used. The names SETT
         do (setf settled (append names settled))))
 
 (defun settled-names (options)
-  "Return a list of the names for which OPTIONS, options of DEFPACKAGE, choose a symbol."
+  "Return a list of the names for which OPTIONS of DEFPACKAGE choose a symbol."
   (append (option-values :shadow options)
           (loop for (key nil . names) in options
                 when (eq key :shadowing-import-from) append names)))
 
 (defun conflicting-names (packages settled)
-  "Return a list of the names, without SETTLED, under which PACKAGES export different symbols."
+  "Return a list of the names, except SETTLED, under which PACKAGES export different symbols."
   (let ((symbols (make-hash-table :test #'equal)))
     (dolist (package packages)
       (do-external-symbols (symbol package)

@@ -232,7 +232,7 @@
              (command:robot-turn rover 1 continuation)
              (run:run-ticks 30))))
     (is-true (has-words-p (told (lambda (robot angle err) (list robot angle err)))
-                          "takes (robot angle err), and is called with (err robot angle)"))
+                          "takes (robot angle err), but is called with (err robot angle)"))
     (is (string= "" (told (lambda (code who angle) (list code who angle)))))
     (is (string= "" (told (lambda (err robot turned) (list err robot turned)))))))
 

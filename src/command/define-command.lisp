@@ -88,7 +88,7 @@ arguments and could itself be the continuation. False if the value is known to b
                                                               (first form)))))))))
 
 (defun warn-of-early-call (name form count)
-  "Warn if FORM, the continuation in a call of NAME, runs before the command NAME ends."
+  "Warn if FORM, passed to NAME as the continuation, is evaluated before the command NAME ends."
   (when (or (returns-nothing-p form) (called-early-p form count))
     (let ((*print-pretty* nil))
       (warn-of-style "~(~A~): ~S is evaluated at once, not when the command has ended, and ~

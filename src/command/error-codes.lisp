@@ -114,7 +114,7 @@ hand-remove and camera-remove.")
     (:not-tracking-destination "The camera tracks something other than the container to enter."
      "Track the container itself with camera-track.")
     (:not-inside "The hand or camera is not inside of anything." "Go on."))
-  "Lists (code meaning remedy) for the simulator's own commands: sentences, or \"\" for no remedy.")
+  "Lists (code meaning remedy) for the simulator's own commands. An empty remedy is \"\".")
 
 (mapc #'note-error-code (mapcar #'first *error-code-explanations*))
 

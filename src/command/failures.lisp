@@ -146,8 +146,8 @@ Return NIL if no command has failed. See WHY."
               :by by :by-for (and by (asker-note-text by-asker)))))))
 
 (defun failure-sentences (resource)
-  "Return a list of sentences about the LAST-FAILURE of RESOURCE: what was issued and when, the
-result, what that means and what to try."
+  "Return a list of sentences about the LAST-FAILURE of RESOURCE: the call and its tick, the result,
+the meaning of the result and what to try."
   (destructuring-bind (&key call for asked tick error text by by-for &allow-other-keys)
       (last-failure resource)
     (if (null error)

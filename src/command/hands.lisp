@@ -35,8 +35,8 @@
     (and (thing-p denotation) denotation)))
 
 (defun drop-designators-by-chance (designator probability dice &key silently)
-  "Drop each designator of the thing that DESIGNATOR denotes with PROBABILITY. If DESIGNATOR denotes
-no thing, drop only DESIGNATOR, with PROBABILITY."
+  "Drop each designator of DESIGNATOR's thing with PROBABILITY. If DESIGNATOR denotes no thing, drop
+only DESIGNATOR, with PROBABILITY."
   (let ((thing (designator-thing designator)))
     (dolist (other (if thing
                        (designators-of-thing (designator-robot designator) thing)

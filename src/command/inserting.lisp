@@ -105,7 +105,7 @@
 ;;; Cameras.
 
 (defun camera-misses-p (camera destination container)
-  "True if DESTINATION is false and local, or if CAMERA by chance bumps a CONTAINER in its reach."
+  "True if DESTINATION is false and local, or if CAMERA by chance bumps CONTAINER in its reach."
   (cond ((null container) (eq (designator-type destination) :local))
         ((reaches-container-p camera container)
          (chance camera-insert-miss-prob* (handling-dice camera)))))

@@ -50,7 +50,7 @@ position. TOLD lists the names of the arguments."
                (or (not (callable-with-count-p continuation (length told)))
                    (misplaced-parameter-p continuation told)))
       (warn-once (list :continuation (command-name command)) world
-                 (format nil "~(~A~): the continuation takes ~(~:A~), and is called with ~(~A~). ~
+                 (format nil "~(~A~): the continuation takes ~(~:A~), but is called with ~(~A~). ~
                               Write (continuation ~:*~(~A~) ...)."
                          (command-name command)
                          (lambda-list-of continuation)

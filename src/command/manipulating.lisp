@@ -45,7 +45,7 @@
 ;;; Methods for given things.
 
 (defun method-things (method arguments)
-  "Return a list of the things that the designators in ARGUMENTS of METHOD denote, NIL for each
+  "Return a list of the things that the designators in ARGUMENTS of METHOD denote, with NIL for each
 designator that denotes no local thing."
   (loop with resource = (method-resource method arguments)
         for nil in (parameter-list-objects (method-parameters method))
@@ -119,7 +119,7 @@ no method, as after UNDEFINE."
   (remove-if-not #'designator-p (operation-arguments operation)))
 
 (defun manipulation-report-text (operation value)
-  "Return a text with the objects and resource of OPERATION, and its VALUE unless NIL (manual E)."
+  "Return a text with the objects and resource of OPERATION, and VALUE unless it is NIL (manual E)."
   (format nil "~{~A~^, ~} by ~A~@[: ~A~]"
           (mapcar #'destination-name (designator-arguments operation))
           (operation-resource operation)

@@ -170,7 +170,7 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
   (not (eq (operation-step operation) 'start-body)))
 
 (defun results-if-interrupted (operation)
-  "Return the results of OPERATION after an interruption: those that :ECHO names, NIL for others."
+  "Return the results of OPERATION after an interruption: what :ECHO names, and NIL for others."
   (let* ((command (operation-command operation))
          (names (mapcar #'spec-name (command-parameters command))))
     (loop for result in (command-results command)
@@ -221,12 +221,12 @@ queue a message and end OPERATION with :FAILED."
   (requeue-event (operation-agenda operation) operation 1))
 
 (defun go-on (operation step &optional (delay 1))
-  "Continue OPERATION with STEP, the name of a function of an operation, DELAY ticks from now."
+  "Continue OPERATION with STEP in DELAY ticks. STEP names a function that takes an operation."
   (setf (operation-step operation) step)
   (requeue-event (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
 
 (defun go-on-now (operation step)
-  "Continue OPERATION with STEP, the name of a function of an operation, in this tick and later."
+  "Continue OPERATION with STEP from this tick on. STEP names a function that takes an operation."
   (setf (operation-step operation) step)
   (funcall step operation))
 
@@ -246,7 +246,7 @@ RIVAL if it takes no time, such as a ROBOT-SET-SPEED just before a ROBOT-GO-FORW
            (interrupt-event agenda rival))))
 
 (defgeneric record-interrupted-operation (name operation rival)
-  (:documentation "Record in OPERATION, of the command NAME, that it interrupts RIVAL.")
+  (:documentation "Record that OPERATION, of the command NAME, interrupts RIVAL.")
   (:method (name operation rival)
     (declare (ignore name))
     (when (body-begun-p rival)

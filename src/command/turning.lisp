@@ -59,7 +59,7 @@ range, else NIL (reading 91)."
   :documentation "Remaining angles below this, in radians, are rounding errors and count as 0.")
 
 (defun turn-step (robot left)
-  "Turn ROBOT by LEFT at most in a tick. Return the remainder and the odometry's step (reading 99)."
+  "Turn ROBOT for a tick, at most by LEFT. Return the rest and the odometry's step (reading 99)."
   (let* ((most (* (robot-turn-angle-now robot) (double tick-quantum*)))
          (step (clamp left (- most) most)))
     (turn-tick robot step)

@@ -12,8 +12,8 @@
                 :resolution (second specification)))
 
 (defun amount-parser (kind initarg)
-  "Return a function that parses an amount, the specification of a part of KIND, as the value of
-INITARG. PARSE-CAMERA is such a function for cameras."
+  "Return a function that parses an amount, which specifies a part of KIND, as the value of INITARG.
+PARSE-CAMERA is such a function for cameras."
   (lambda (amount reject)
     (unless (amount-p amount)
       (funcall reject amount (argument-type-text 'amount)))

@@ -56,8 +56,8 @@ robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
 ;;; A robot's designators by number.
 
 (defparameter *designator-limit* 1000
-  "The number of designators that a robot keeps. For each further designator, the oldest designator
-that no camera tracks is removed.")
+  "The number of designators that a robot keeps. When a robot exceeds this number, its oldest
+designator that no camera tracks is removed.")
 
 (addition find-designator)
 (defun find-designator (robot number)
@@ -84,11 +84,11 @@ and REPL. Signals WRONG-ARGUMENT if there is no such designator."
 
 (addition live-designators)
 (defun live-designators (robot)
-  "Return a list of the valid designators of ROBOT, by number."
+  "Return a list of the valid designators of ROBOT, sorted by number."
   (coerce (remove nil (robot-designators robot)) 'list))
 
 (defun designators-of-thing (robot thing)
-  "Return a list of the valid designators of ROBOT that denote THING, by number."
+  "Return a list of the valid designators of ROBOT that denote THING, sorted by number."
   (loop for designator across (robot-designators robot)
         when (and designator (eq (designator-denotation designator) thing))
           collect designator))

@@ -88,7 +88,7 @@ outside the map (reading 215)."
 ;;; interrupted; commands to it signal an error that says why.
 
 (defun retire-robot (robot reason)
-  "Make ROBOT refuse further commands, for REASON, a sentence without its full stop."
+  "Make ROBOT refuse commands from now on. REASON is a sentence without its full stop."
   (setf (robot-retired robot) reason))
 
 (defun call-run-enders (robot)

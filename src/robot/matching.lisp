@@ -70,7 +70,7 @@ PACKAGE, the name of a package, if given."
         (t value)))
 
 (defun sensing-error-probability (probability)
-  "Return PROBABILITY, that of a sensing error, or 0 while NO-SENSOR-ERROR* is true (reading 118)."
+  "Return the PROBABILITY of a sensing error, or 0 while NO-SENSOR-ERROR* is true (reading 118)."
   (if no-sensor-error* 0d0 (double probability)))
 
 (defun angle-error (dice)

@@ -238,10 +238,10 @@ robot can drive along the border of two cells and stay in one cell."
     (incf (robot-estimate-y robot) (* estimate (robot-sin robot)))))
 
 (defun drive-tick (robot &optional (limit +infinite-distance+))
-  "Drive ROBOT for one tick at its speed, but not by more than LIMIT metres apart from noise;
-backwards if LIMIT is negative. Return the obstacle, :WALL or :THING, if ROBOT was blocked, else
-NIL. The distance is uniformly distributed within MOTION-NOISE* of the speed; the odometers read an
-interval that contains the distance (reading 96)."
+  "Drive ROBOT for one tick at its speed, by at most LIMIT metres before noise; backwards if LIMIT
+is negative. Return the obstacle, :WALL or :THING, if ROBOT was blocked, else NIL. The distance is
+uniformly distributed within MOTION-NOISE* of the speed; the odometers read an interval that
+contains the distance (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
          (step (step-now robot))

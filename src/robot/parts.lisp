@@ -32,7 +32,7 @@
 ;;; (with the robot), a container among the things, or a storage bin.
 
 (define-kind (mind :include resource)
-    "The resource that THINK occupies: one thought at a time, while body and parts continue."
+    "The resource that THINK occupies, so that body and parts continue while a robot thinks."
   (:fixed
    (robot nil t "the robot whose mind it is" :export)))
 
@@ -250,7 +250,7 @@ that WORLD-SETTLED-P excludes."
   (let ((parts (funcall reader robot)))
     (unless (and (integerp index) (< -1 index (length parts)))
       (reject-argument operator "index" index
-                       (format nil "an index from 0 and below ~D, the number of such parts of ~A"
+                       (format nil "an index from 0 to below ~D, the number of such parts of ~A"
                                (length parts) (robot-name robot))))
     (svref parts index)))
 

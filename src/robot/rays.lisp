@@ -43,9 +43,9 @@ Return the point beyond the corner, as two values, or NIL if the ray has ended."
     (values beyond-x beyond-y)))
 
 (defun walk-ray (visit world x y dx dy)
-  "Call VISIT with index and flags of each cell of WORLD, after the first, on the ray from (X,Y) in
-direction (DX,DY), until VISIT returns true or the map ends. At a corner the ray meets neither of
-the two cells beside the corner, if one of these cells lets the ray through (reading 100)."
+  "Call VISIT with index and flags of each cell of WORLD that the ray from (X,Y) in direction
+(DX,DY) meets after its first cell, until VISIT returns true or the map ends. At a corner the ray
+meets neither cell beside the corner, if one of the two cells lets it through (reading 100)."
   (declare (type function visit) (type double-float x y dx dy))
   (let ((dx (nonzero-component dx)) (dy (nonzero-component dy)) (map (world-map world)))
     (loop

@@ -82,8 +82,8 @@ cells that the rays meet and whose place type has NUMBER in the map."
   (+ (robot-angle (camera-robot camera)) (camera-angle camera)))
 
 (defun cells-in-view (camera reach)
-  "Return a list of the cells where CAMERA may see things: the robot's own cell, then the cells with
-things that rays meet within REACH columns and rows."
+  "Return a list of the cells where CAMERA may see things: the robot's own cell, then the cells that
+rays meet within REACH columns and rows and that hold things."
   (let* ((robot (camera-robot camera)) (own (robot-cell-index robot)))
     (when own
       (cons own (occupied-cells (robot-world robot) (robot-x robot) (robot-y robot)

@@ -41,7 +41,7 @@
 
 (addition tracking-cameras)
 (defun tracking-cameras (designator)
-  "Return a list of the cameras that track DESIGNATOR, by index."
+  "Return a list of the cameras that track DESIGNATOR, sorted by index."
   (loop for camera across (robot-cameras (designator-robot designator))
         when (tracking-p camera designator)
           collect camera))
