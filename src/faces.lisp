@@ -1,7 +1,7 @@
 ;;;; faces.lisp -- the packages that users see: ARS, NISP and ARS-USER.
 
 (defpackage :ars-magna.faces
-  (:documentation "Defines ARS, NISP and ARS-USER, which export symbols of all layers to users.")
+  (:documentation "ARS and NISP, which export symbols of all layers; ARS-USER, which uses both.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:export #:cli #:define-user-package #:join-editors #:inspect-in-editor #:editor-server))
 
