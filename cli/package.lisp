@@ -28,7 +28,7 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:waiting-parts #:text-of-waits #:advice-on-endless-waits)
   (:import-from :ars-magna.rpl-robot #:rpl-runner
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
-                #:call-with-plans-in-use #:*robot-to-drive* #:note-robot-commanded)
+                #:call-with-plans-in-use #:*commanded-robot-hook* #:note-robot-commanded)
   (:import-from :ars-magna.rpl-robot #:*trace-plans*)
   (:import-from :ars-magna.rpl.language #:all-constructs)
   (:import-from :ars-magna.nisp #:readtable-name)
@@ -42,8 +42,8 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:experiment-conditions #:experiment-trials #:experiment-limit #:experiment-file
                 #:find-condition #:condition-name #:trial-seed
                 #:number-from-text #:ensure-store-directory
-                #:run-again #:trial-prompt-line #:*replayed-trial-line* #:call-until-error
-                #:call-outside-trial #:await-time
+                #:rerun-trial #:trial-prompt-line #:*replayed-trial-line* #:call-until-error
+                #:call-outside-trial #:await-real-time
                 #:prepare-condition #:row-of-trial #:row-differences
                 #:result-outcome #:result-reason #:result-ticks #:result-error #:measure-values
                 #:print-failures

@@ -8,7 +8,7 @@
 (defparameter *editor-server-packages* '("SWANK/BACKEND" "SWANK-BACKEND" "SLYNK-BACKEND")
   "The packages of SLIME and SLY that may contain the inspector's generic function.")
 
-(defun inspectors ()
+(defun inspector-names ()
   "Return the names of the generic functions that inspectors of loaded editor servers call."
   (remove-duplicates
    (loop for server in *editor-server-packages*
@@ -41,7 +41,7 @@
   "Make the inspectors of SLIME and SLY show robots, things, maps and the like as DESCRIBE does,
 with descriptions of their slots. Loading the simulator calls this function. Call it again if a
 server, SWANK or SLYNK, was loaded later. Return the names of the found servers' packages."
-  (loop for inspector in (inspectors)
+  (loop for inspector in (inspector-names)
         collect (package-name (symbol-package inspector))
         unless (inspector-extended-p inspector)
           do (eval `(defmethod ,inspector :around ((object structure-object))

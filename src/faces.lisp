@@ -7,12 +7,12 @@
 
 (in-package :ars-magna.faces)
 
-(defun document-addition (symbol)
+(defun document-as-addition (symbol)
   "Say in all documentation of SYMBOL that SYMBOL is an addition to the manual."
   (dolist (kind '(function variable type))
     (let ((text (documentation symbol kind)))
       (when text
-        (setf (documentation symbol kind) (addition-text text))))))
+        (setf (documentation symbol kind) (addition-docstring text))))))
 
 ;;; Layers SETF what they read of a run; users must not, as no journal would know. So where a
 ;;; function can be set and is not marked as SETTABLE, a face has its own symbol for it.
@@ -45,7 +45,7 @@
 (defun export-symbol (symbol face)
   "Make the package FACE export SYMBOL. If users must not SETF the function SYMBOL, export a symbol
 of FACE that names the same function."
-  (when (addition-p symbol) (document-addition symbol))
+  (when (addition-p symbol) (document-as-addition symbol))
   (let ((shown (if (read-only-for-users-p symbol) (ensure-read-only-reader symbol face) symbol)))
     (shadowing-import (list shown) face)
     (export (list shown) face)))

@@ -83,7 +83,7 @@
                    (one-of dice 0 (1- (expt 2 64)) (base:roll-index 1000000000 dice)
                            (ash #x7FF 52) (ash 1 31) (ash 1 32) (ash 255 32)
                            (+ 107 (ash 1 32)) (+ 50 (ash 1 32)))))
-    (setf (aref copy (1- world::+cache-header+)) (world::words-checksum copy))
+    (setf (aref copy (1- world::+cache-header-size+)) (world::words-checksum copy))
     copy))
 
 (define-abuse cache-words (seed)

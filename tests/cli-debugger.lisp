@@ -51,15 +51,15 @@
 (test hook.that-threads-share-follows-from-the-prompts-at-work
   "Whichever comes first: that of a window may, and go before the terminal's does."
   (let ((before (base:global-debugger-hook)))
-    (cli::begin-sharing-hook 'cli::enter-debugger)
-    (cli::begin-sharing-hook 'cli::enter-debugger)
-    (cli::end-sharing-hook 'cli::enter-debugger)
+    (cli::add-prompt-hook 'cli::enter-debugger)
+    (cli::add-prompt-hook 'cli::enter-debugger)
+    (cli::remove-prompt-hook 'cli::enter-debugger)
     (is (eq 'cli::enter-debugger (base:global-debugger-hook)))
-    (cli::begin-sharing-hook 'cli::debugger-disabled-hook)
+    (cli::add-prompt-hook 'cli::debugger-disabled-hook)
     (is (eq 'cli::enter-debugger (base:global-debugger-hook)))
-    (cli::end-sharing-hook 'cli::enter-debugger)
+    (cli::remove-prompt-hook 'cli::enter-debugger)
     (is (host:disabled-hook-p (base:global-debugger-hook)))
-    (cli::end-sharing-hook 'cli::debugger-disabled-hook)
+    (cli::remove-prompt-hook 'cli::debugger-disabled-hook)
     (is (eq before (base:global-debugger-hook)))))
 
 ;;; Where somebody does.
@@ -174,7 +174,7 @@
                                                   (turn-back () :turned-back))
                                                 *went-on*)))
                                       "breaking"))
-  (loop until (cli::session-breaks cli::*session*) do (base:yield-thread)))
+  (loop until (cli::session-other-breaks cli::*session*) do (base:yield-thread)))
 
 (test break.of-another-thread-reads-the-prompts-lines
   (let ((written (type-at-terminal "(ars-magna.tests::break-elsewhere)"
@@ -197,7 +197,7 @@
                                 value))
                             *went-on*))
                     "breaking"))
-  (loop until (cli::session-breaks cli::*session*) do (base:yield-thread)))
+  (loop until (cli::session-other-breaks cli::*session*) do (base:yield-thread)))
 
 (test break.of-another-thread-takes-a-value
   "It is typed after the choice, or in the next line."
@@ -240,7 +240,7 @@
                         (restart-case (break "there too")
                           (go-back () (base:join-thread first) (push 2 *went-on*))))
                       "breaking, too")))
-  (loop until (rest (cli::session-breaks cli::*session*)) do (base:yield-thread)))
+  (loop until (rest (cli::session-other-breaks cli::*session*)) do (base:yield-thread)))
 
 (test break.of-other-threads-is-answered-in-order
   (let ((written (type-at-terminal "(ars-magna.tests::break-twice-elsewhere)" "go-b" "turn" "go-b"
@@ -359,10 +359,10 @@ asked goes."
                         (base:call-user-code (lambda () (error "Slipped.")) "a test"))))
                   "breaking")))
     (is-true (base:wait-on-semaphore asked 60))
-    (is (equal "the editor's debugger" (base:asking-debugger-text thread)))
+    (is (equal "the editor's debugger" (base:waiting-debugger-name thread)))
     (base:end-inquiries (constantly t))
     (base:join-thread thread)
-    (is (null (base:asking-debugger-text thread)))
+    (is (null (base:waiting-debugger-name thread)))
     (let ((texts (mapcar #'base:message-text (base:take-messages queue))))
       (is-true (find-if (lambda (text) (mentions-p text "disconnected; abort was chosen")) texts)
                "~A" texts)

@@ -174,7 +174,7 @@ is left: SBCL itself ends where there is none at all."
        (bordeaux-threads:interrupt-thread (bordeaux-threads:current-thread)
                                           (lambda () (push :interrupt log)))
        (push :held log)
-       (base:call-with-held-interrupts (lambda () (push :line log)))
+       (base:call-releasing-interrupts (lambda () (push :line log)))
        (push :held log)))
     (is (equal '(:held :interrupt :line :held) (reverse log)))))
 

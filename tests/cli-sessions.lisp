@@ -142,7 +142,7 @@
         (is (mentions-p written part))))))
 
 (defun await-break (talk)
-  (awaiting (cli::session-breaks (talk-session talk))))
+  (awaiting (cli::session-other-breaks (talk-session talk))))
 
 (test sessions.a-simulator-that-breaks-asks-those-who-watch-it
   (in-studio (robot)

@@ -24,14 +24,15 @@
   (in-window (window robot)
     (let ((session (window::window-session window)) (thread (base:current-thread)))
       (is (null (note-above window)))
-      (is (not (mentions-p (window::time-text window) "the prompt asks")))
+      (is (not (mentions-p (window::run-status-text window) "the prompt asks")))
       (leave-broken session (broken "oh" thread))
       (is (mentions-p (note-above window) "How to continue? oh (in another thread, "))
-      (is (mentions-p (window::time-text window) "the prompt asks how to continue a program"))
+      (is (mentions-p (window::run-status-text window) "the prompt asks how to continue a program"))
       (setf (cli::break-state-own (cli::session-break-state session))
             (broken "mine" (cli::session-thread session) t))
       (is (mentions-p (note-above window) "1 more waits. How to continue? mine"))
-      (is (mentions-p (window::time-text window) "the prompt asks how to continue two programs")))))
+      (is (mentions-p (window::run-status-text window)
+                      "the prompt asks how to continue two programs")))))
 
 (test awaiting.is-said-once-where-the-simulator-waits
   "The strip's word for how time goes tells of that one."
@@ -40,9 +41,10 @@
       (setf (window::watcher-progress (window::window-watcher window))
             (window::make-progress :state :broken))
       (leave-broken session (broken "oh" thread))
-      (is (= 1 (occurrences "asks how" (window::time-text window))))
+      (is (= 1 (occurrences "asks how" (window::run-status-text window))))
       (leave-broken session (broken "oh" thread) (broken "ah" thread))
-      (is (mentions-p (window::time-text window) "the prompt asks how to continue two programs")))))
+      (is (mentions-p (window::run-status-text window)
+                      "the prompt asks how to continue two programs")))))
 
 (test awaiting.what-breaks-while-another-is-answered-leaves-the-prompt-there
   "What it says would else stand where the line was, which would not be seen."

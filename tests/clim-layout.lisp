@@ -43,21 +43,21 @@
 
 (test layout.who-needs-little-gets-it
   (is (null (set-exclusive-or '((window::hands 20) (window::state 86) (window::cameras 94))
-                              (window::share-height '((window::state 150) (window::cameras 300)
-                                                      (window::hands 20))
-                                                    200)
+                              (window::divide-height '((window::state 150) (window::cameras 300)
+                                                       (window::hands 20))
+                                                     200)
                               :test #'equal)))
   (is (equal '((window::state 30) (window::designators 150) (window::hands 20))
-             (window::share-height '((window::state 30) (window::designators 10)
-                                     (window::hands 20))
-                                   200))))
+             (window::divide-height '((window::state 30) (window::designators 10)
+                                      (window::hands 20))
+                                    200))))
 
 (test layout.displays-of-text-show-whole-lines
   "But for the last, which has what is left over."
   (loop for height from 40 to 400 by 7
-        for shares = (window::share-height '((window::state 150) (window::hands 300)
-                                             (window::bins 250))
-                                           height)
+        for shares = (window::divide-height '((window::state 150) (window::hands 300)
+                                              (window::bins 250))
+                                            height)
         do (is (= height (reduce #'+ shares :key #'second)))
            (when (< 70 height)
              (is (every (lambda (share) (= 6 (mod (second share) 16))) (butlast shares))))))
@@ -81,7 +81,8 @@
   (let ((canvas (make-instance 'window::clim-canvas :medium nil :bottom 38)))
     (flet ((whole (offset)
              (setf (window::canvas-dy canvas) (- offset))
-             (loop for base from 18 to 66 by 16 collect (window::text-uncut-p canvas base))))
+             (loop for base from 18 to 66 by 16 collect
+                   (window::text-fully-visible-p canvas base))))
       (is (equal '(t t nil nil) (whole 0)))
       (is (equal '(nil t t nil) (whole 16)))
       (is (equal '(nil nil t nil) (whole 28))))))

@@ -270,7 +270,7 @@
   "Where the prompt lets ticks pass for that."
   (in-studio (robot)
     (let* ((seen '())
-           (cli:*whereabouts-hooks* (list (lambda (session old new)
+           (cli:*before-line-hooks* (list (lambda (session old new)
                                             (declare (ignore session old))
                                             (push (run:simulation-tick new) seen))))
            (session (cli:make-session :input (make-string-input-stream ""))))

@@ -74,7 +74,7 @@
         (is (mentions-p (window::hover-text pane 44 36) "PEN#"))
         (is (mentions-p (window::hover-text pane 44 36) "STUDIO-ROBOT"))
         (is (equal "STUDIO-ROBOT" (taken)))
-        (window::select-next-at pane 44 36)
+        (window::select-next-subject pane 44 36)
         (is (mentions-p (taken) "PEN#"))))))
 
 (defun same-place-p (box other)
@@ -373,7 +373,7 @@ leads to both."
   (in-window (window robot)
     (lay-out window 640 480)
     (let ((pane (pane window 'window::bar)))
-      (is (= (length window::*buttons*) (length (window::pane-subjects pane))))
+      (is (= (length window::*bar-buttons*) (length (window::pane-subjects pane))))
       (is (equal "Pause the run, or let time pass again (key: space)"
                  (window::hover-text pane 20 12)))
       (loop for (nil left nil right) in (window::pane-subjects pane)

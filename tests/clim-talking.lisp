@@ -161,11 +161,11 @@
                                                      (constantly nil) (constantly nil))))
       (setf (window::window-conversation window) conversation)
       (window::start-conversation conversation (time:current-simulation) 'studio-robot)
-      (is (not (mentions-p (window::time-text window) "waits for your answer")))
+      (is (not (mentions-p (window::run-status-text window) "waits for your answer")))
       (window::run-line-at-prompt conversation "(list (read) 2)")
       (is (equal "(list (read) 2)" (await-in conversation news #'window::line-awaiting-input)))
       (is (mentions-p (note-above window) "(list (read) 2) waits for your answer -- Control-C"))
-      (is (mentions-p (window::time-text window) "; a program waits for your answer"))
+      (is (mentions-p (window::run-status-text window) "; a program waits for your answer"))
       (is (equal "Answer> " (first (await-in conversation news #'window::shown-input-line))))
       (window::pass-key conversation "half")
       (cli:interrupt-session (window::conversation-session conversation))
@@ -357,7 +357,7 @@
   (flet ((group (name) (window::prompt-menu-title (cli:find-line-command name))))
     (is (equal '("Cameras" "Cameras" "Moving" "Plans" "Prompt" "Hands")
                (mapcar #'group '("OBJ-DESIG" "CAM-TRACK" "TURN" "PLAN" "QUIT" "HAND-GRASP"))))
-    (loop for (family) in cli::*families*
+    (loop for (family) in cli::*line-families*
           do (is (assoc family window::*prompt-menu-titles*) "~A has no menu" family))))
 
 ;;; Which robot.

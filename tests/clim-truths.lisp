@@ -16,7 +16,7 @@
 
 (defun time-said (window)
   (window::check-progress (window::window-watcher window))
-  (window::time-text window))
+  (window::run-status-text window))
 
 (test trials.strip-and-button-say-how-time-passes
   (in-window (window robot)

@@ -106,8 +106,8 @@
 
 (test canvas.outlines-of-arcs-stay-in-their-box
   "Manual B.1: a circle inscribed in a cell has all of its pixels there."
-  (is (equal '(8 8 7 7) (multiple-value-list (window::outline-box 8 8 8 8 1))))
-  (is (equal '(9 9 5 5) (multiple-value-list (window::outline-box 8 8 8 8 3)))))
+  (is (equal '(8 8 7 7) (multiple-value-list (window::box-for-outline 8 8 8 8 1))))
+  (is (equal '(9 9 5 5) (multiple-value-list (window::box-for-outline 8 8 8 8 3)))))
 
 (test canvas.has-the-dashes-that-are-asked-for
   (flet ((dashes-of (magnification &rest options)

@@ -130,7 +130,7 @@
     (base:take-messages)
     (world:set-attribute thing :draw-function (lambda (&rest arguments)
                                                 (declare (ignore arguments))
-                                                (base:call-with-limit
+                                                (base:call-with-time-limit
                                                  (lambda () (loop)) 1/100
                                                  #'display::signal-drawing-timeout)))
     (detail robot :hands)
@@ -147,14 +147,14 @@
   (with-hand-that-holds (thing robot draw-word)
     (setf (fdefinition 'never-said) (lambda (&rest arguments) (error "called: ~S" arguments)))
     (let ((symbol 'never-said))
-      (world::set-attribute-again thing :draw-function symbol)
+      (world::set-attribute-in-replay thing :draw-function symbol)
       (is (eq symbol (world:get-attribute thing :draw-function)))
       (base:take-messages)
       (detail robot :hands)
       (let ((texts (mapcar #'base:message-text (base:take-messages))))
         (is (= 1 (length texts)))
         (is (mentions-p (first texts) "from a data file")))
-      (world::set-attribute-again thing :draw-function 'draw-word)
+      (world::set-attribute-in-replay thing :draw-function 'draw-word)
       (is (self-made-p robot)))))
 
 (test draw-functions.worlds-that-have-them-can-be-saved

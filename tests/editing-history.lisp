@@ -48,7 +48,7 @@
 (defun type-into-history (file &rest entries)
   (let ((history (cli::make-history file)))
     (dolist (entry entries) (cli::add-entry history entry))
-    (cli::save-entry history)))
+    (cli::save-newest-entry history)))
 
 (test history.is-not-added-to-where-it-is-write-protected
   (with-history-file (file)
@@ -73,10 +73,10 @@
       (cli::add-entry history "(list")
       (is (> 100000000 (bytes-consed-by (lambda ()
                                           (dotimes (i 20000)
-                                            (cli::extend-entry history "a line" text)
+                                            (cli::extend-newest-entry history "a line" text)
                                             (cli::extend-text text "a line")))
                                         1)))
-      (cli::save-entry history)
+      (cli::save-newest-entry history)
       (is (equal (list text) (cli::history-entries (cli::make-history file)))))))
 
 (test history.is-kept-before-the-next-line-is-typed
@@ -94,13 +94,13 @@
     (let ((one (cli::make-history file)) (two (cli::make-history file)))
       (cli::add-entry one "a")
       (cli::add-entry two "b")
-      (mapc #'cli::save-entry (list one two))
+      (mapc #'cli::save-newest-entry (list one two))
       (is (equal '("b" "a") (cli::history-entries (cli::make-history file)))))))
 
 (test history.does-without-a-file-that-cannot-be-used
   (let ((history (cli::make-history #p"/no/such/directory/history")))
     (cli::add-entry history "a")
-    (finishes (cli::save-entry history))
+    (finishes (cli::save-newest-entry history))
     (is (equal '("a") (cli::history-entries history)))))
 
 (test history.does-not-grow-for-ever

@@ -271,7 +271,7 @@ name in *KEY-CODES*."
 (test editing.swallows-one-key-and-no-more
   (flet ((rest-of (&rest keys)
            (let ((stream (typed-text-for (keyboard-for keys :at-hand t) (terminal-console))))
-             (cli::discard-key stream)
+             (cli::discard-next-key stream)
              (read-line stream nil))))
     (is (null (rest-of "q")))
     (is (null (rest-of :up)))

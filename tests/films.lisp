@@ -164,12 +164,12 @@
   (in-studio (robot)
     (let ((name (make-string 40 :initial-element #\y)))
       (world:make-new-thing (make-symbol name) (list (robot:robot-world robot) 8 8) '())
-      (is (mentions-p (display::film-legend (cast-of robot) '(:legend) t)
+      (is (mentions-p (display::film-legend-html (cast-of robot) '(:legend) t)
                       (format nil "<li title=\"~A\">" name))))))
 
 (defun cast-of (robot)
   "Return what is to be seen now around ROBOT, as films have it."
-  (let* ((snapshot (display:snapshot-of robot)) (cast (display::make-film-contents snapshot)))
+  (let* ((snapshot (display:snapshot-of robot)) (cast (display::make-film-cast snapshot)))
     (display::add-film-contents snapshot '(:legend) cast)
     cast))
 

@@ -118,7 +118,7 @@
 (defun png-samples (image)
   "Return the samples of the PNG file IMAGE; NIL if it is refused."
   (let ((input (floors::make-image-input #p"floor.png" (octets-of-image image))))
-    (and (floors::png-begins-p input)
+    (and (floors::png-signature-p input)
          (handler-case (floors::image-samples (floors::read-png input 10000 :trinary))
            (ars:unusable-floor () nil)))))
 

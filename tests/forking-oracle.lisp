@@ -26,7 +26,7 @@
       (typecase object
         (ars-magna.ways::field (ars-magna.ways::field-lock object))
         (tasks::node (eq :shared (tasks::node-sharing object)))
-        (tasks::procedure (nth-value 1 (tasks::shared-code object))))))
+        (tasks::procedure (nth-value 1 (tasks::shareable-nodes object))))))
 
 (defun replaced-slots (object)
   "Return the names of the slots of OBJECT in which nothing is ever altered; kinds say so of them."

@@ -97,10 +97,10 @@ what is there."
 
 (test our-manual.escapes-what-html-takes-for-its-own
   (is (string= "a &lt;b&gt; &amp; &quot;c&quot;" (manual:escape-html "a <b> & \"c\"")))
-  (is (string= "make-pt" (manual:anchor "MAKE-PT")))
-  (is (string/= (manual:anchor "add") (manual:anchor "add!")))
+  (is (string= "make-pt" (manual:entry-anchor "MAKE-PT")))
+  (is (string/= (manual:entry-anchor "add") (manual:entry-anchor "add!")))
   (is (every (lambda (char) (or (alphanumericp char) (find char "-_")))
-             (manual:anchor ":color <a href=\"x\">*"))))
+             (manual:entry-anchor ":color <a href=\"x\">*"))))
 
 (test our-manual.writes-numbers-as-people-do
   (is (equal '("0.0005" "0.004" "1" "0.1")

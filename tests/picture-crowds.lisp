@@ -132,7 +132,7 @@ of the lines that lead to names, x y x y each."
   "The small line of the manual's figure has a white halo."
   (destructuring-bind (halo line)
       (drawing (canvas)
-        (let ((canvas:graphics-scale* 8)) (display::draw-upright-line canvas 20 20)))
+        (let ((canvas:graphics-scale* 8)) (display::draw-thing-as-line canvas 20 20)))
     (is (mentions-p halo (web canvas:white*)))
     (is (mentions-p line (web canvas:black*)))))
 

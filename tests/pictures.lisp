@@ -128,7 +128,7 @@
                             ":RANGES *" "An addition to the manual."))
       (is (equal '(:ranges :range "RANGES or RANGE")
                  (list (display:picture-layer-name :range) (display:text-layer-name :ranges)
-                       (display:layer-prompt-names :ranges)))))))
+                       (display:layer-prompt-text :ranges)))))))
 
 (test layers.what-they-note-changes-what-displays-show
   "A window draws anew where a note is another one."

@@ -51,7 +51,7 @@
              (length (drawn-with :polygon
                                  (format nil "~{~A~}"
                                          (drawing (canvas)
-                                           (trails::draw-arrows-of
+                                           (trails::draw-arrows-on-ways
                                             canvas
                                             (loop for end in ends
                                                   collect (trails::make-way

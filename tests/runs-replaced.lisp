@@ -288,7 +288,7 @@ function and its arguments."
 
 (test homes.are-left-by-who-is-interrupted-while-leaving
   (let ((runner (rpl:make-plan-runner)))
-    (is (eq :left (coming-between (fluents::leave-home (leave home)
+    (is (eq :left (coming-between (fluents::release-home (leave home)
                                     (interrupt-here)
                                     (funcall leave home))
                     (interrupted (fluents::call-with-owned-home runner (constantly 1))))))

@@ -47,11 +47,11 @@
     (setf (ways::field-cells field) (copy-seq (ways::field-cells field)))
     (dolist (node (map-nodes chart))
       (setf (aref (ways::field-cells field) node) (ways::cost-of-node chart node)))
-    (when (< (ways::cost-of-node chart goal) ways::+barred+) (setf (aref totals goal) 0d0))
+    (when (< (ways::cost-of-node chart goal) ways::+barred-cost+) (setf (aref totals goal) 0d0))
     (loop for changed = nil
           do (dolist (node (map-nodes chart))
-               (when (< (aref (ways::field-cells field) node) ways::+barred+)
-                 (let ((draft (ways::best-draft field node)))
+               (when (< (aref (ways::field-cells field) node) ways::+barred-cost+)
+                 (let ((draft (ways::compute-draft-cost field node)))
                    (unless (= draft (aref totals node))
                      (setf (aref totals node) draft changed t)))))
           while changed)
@@ -61,7 +61,7 @@
   "True if what is found from any of NODES to the node GOAL is not what the slow way finds."
   (let ((slow (slow-totals chart goal)))
     (some (lambda (node)
-            (/= (aref slow node) (ways::find-total (ways::field-for-goal chart goal) node)))
+            (/= (aref slow node) (ways::cost-to-goal (ways::field-for-goal chart goal) node)))
           nodes)))
 
 (defun shuffled-nodes (list dice)
@@ -126,7 +126,7 @@
                                                       (+ node x y)))))))))
 
 (defun dijkstra-total (chart start goal)
-  "Return what GOAL costs from START, both nodes, by steps between nodes; +BARRED+ if there is no
+  "Return what GOAL costs from START, both nodes, by steps between nodes; +BARRED-COST+ if there is no
 way."
   (let ((known (make-hash-table)) (open (list (cons 0d0 goal))))
     (loop while open
@@ -134,10 +134,10 @@ way."
                (unless (gethash node known)
                  (setf (gethash node known) total)
                  (loop for (next cost) in (step-costs chart node)
-                       when (and (< cost ways::+barred+) (not (gethash next known)))
+                       when (and (< cost ways::+barred-cost+) (not (gethash next known)))
                          do (setf open (merge 'list open (list (cons (+ total cost) next))
                                               #'< :key #'car))))))
-    (gethash start known ways::+barred+)))
+    (gethash start known ways::+barred-cost+)))
 
 (test totals.lie-between-the-straight-line-and-steps-from-cell-to-cell
   (let ((dice (base:make-dice 13)) (found 0))
@@ -148,7 +148,7 @@ way."
             (destructuring-bind (start goal) (list (random-cell map dice) (random-cell map dice))
               (let ((total (ars:way-cost chart start goal))
                     (steps (dijkstra-total chart (node-in chart start) (node-in chart goal))))
-                (is (eq (null total) (= steps ways::+barred+)))
+                (is (eq (null total) (= steps ways::+barred-cost+)))
                 (when total
                   (incf found)
                   (is (<= total (+ steps 1d-9)))

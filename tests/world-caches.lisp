@@ -161,7 +161,7 @@
 (test cache.header-counts-word-by-word
   (with-fresh-cache
     (let ((built (grid-of (apply #'cached-map *cached-clauses*))) (octets (cache-octets)))
-      (loop for word below world::+cache-header+
+      (loop for word below world::+cache-header-size+
             for damaged = (copy-seq octets)
             do (setf (aref damaged (* 8 word)) (logxor 1 (aref damaged (* 8 word))))
                (write-octets damaged)

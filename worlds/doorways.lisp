@@ -9,7 +9,7 @@
 (defun vector-length (dx dy)
   (sqrt (+ (* dx dx) (* dy dy))))
 
-(defun cell-of (point)
+(defun cell-of-point (point)
   (mapcar #'floor point))
 
 (defun middle-of (cell)
@@ -55,7 +55,7 @@ leads from DOOR to the side where the robot is."
         next
         (mapcar (lambda (from to) (+ from (/ (- to from) length))) middle next))))
 
-(defun placed-for-doorway-p (start door before)
+(defun in-line-with-doorway-p (start door before)
   "True if a robot at START can drive straight into the cell DOOR, nearly as well as from BEFORE."
   (destructuring-bind (dx dy) (mapcar #'- before (middle-of door))
     (destructuring-bind (x y) (mapcar #'- start (middle-of door))
@@ -71,12 +71,12 @@ CHART the way from START to GOAL leads through DOOR."
     (and cost
          (<= cost (- (way-cost chart start goal) (way-cost chart (middle-of door) goal))))))
 
-(defun step-to-doorway (chart way door goal)
+(defun first-step-to-doorway (chart way door goal)
   "Return a robot's first step on WAY, which ends in the doorway DOOR. DOOR leads to GOAL."
   (let* ((start (first way))
          (before (point-before-doorway (chart-map chart) door
                                        (direction-from (middle-of door) (first (last way 2))))))
-    (cond ((placed-for-doorway-p start door before)
+    (cond ((in-line-with-doorway-p start door before)
            (list :door door (point-beyond-doorway chart door goal)))
           ((straight-way-as-good-p chart start before door goal) (list :drive before))
           (t (list :drive (second way))))))
@@ -92,8 +92,8 @@ CHART the way from START to GOAL leads through DOOR."
          (way (and start goal
                    (mapcar #'point-as-list
                            (find-way chart start goal :until 'doorway))))
-         (end (and way (cell-of (first (last way))))))
+         (end (and way (cell-of-point (first (last way))))))
     (cond ((null way) nil)
-          ((and (apply #'doorway-at map end) (not (equal end (cell-of (first way)))))
-           (step-to-doorway chart way end goal))
+          ((and (apply #'doorway-at map end) (not (equal end (cell-of-point (first way)))))
+           (first-step-to-doorway chart way end goal))
           (t (list :drive (second way))))))

@@ -162,11 +162,11 @@ then take the step NEXT with the last designator. After LOOKS searches take the 
           (stop-camera-track errand
                              (lambda (errand)
                                (if (eq err :insufficient-strength)
-                                   (leave-heavy-thing errand)
+                                   (seek-lighter-thing errand)
                                    (take-next-step errand err #'open-for-target #'check-target
                                                    :hand-grasping)))))))))
 
-(defun leave-heavy-thing (errand)
+(defun seek-lighter-thing (errand)
   "Look for something lighter. End ERRAND after three heavy things."
   (if (= 3 (incf (errand-too-heavy errand)))
       (end-errand errand :insufficient-strength)

@@ -12,7 +12,7 @@
     (three-ways-of-searching "success" "difference-in-success-by-way"))
   "Lists (experiment picture...): the names of the pictures that the page shows.")
 
-(defparameter *page-ways*
+(defparameter *trials-with-ways*
   '((fetching-against-motion-noise "motion-noise*=0.6" 60 (52 12 120 46))
     (three-ways-of-searching "way=search-watchfully miss-thing-prob*=0.2" 20 nil))
   "Lists (experiment condition trials part): the trials whose ways the page shows, and the part of
@@ -120,7 +120,7 @@ the map to draw; NIL is the whole map.")
     (format nil "~D % (~D to ~D)" (round (* 100 successes) trials) (round (* 100 low))
             (round (* 100 high)))))
 
-(defun choosing-row (name results sample)
+(defun choosing-table-row (name results sample)
   "Return the row of the table for SAMPLE of RESULTS, with NAME as its first cell."
   (let* ((trials (length (sample-trials sample)))
          (successes (count-if #'in-time-p (sample-outcomes sample)))
@@ -152,7 +152,7 @@ the map to draw; NIL is the whole map.")
                   "|---|---|---|---|")
             (loop for name in *choosing-labels*
                   for sample in samples
-                  collect (choosing-row name results sample))
+                  collect (choosing-table-row name results sample))
             (list "")
             (paired-comparison-lines (sample-outcomes (first samples))
                                      (sample-outcomes (first (last samples)))))))
@@ -179,7 +179,7 @@ and save their pictures."
           do (let ((results (run-experiment experiment)))
                (setf lines (replace-table lines experiment (results-lines results)))
                (save-page-pictures experiment results names)))
-    (loop for (experiment condition trials part) in *page-ways*
+    (loop for (experiment condition trials part) in *trials-with-ways*
           do (save-ways-picture experiment condition
                                 (merge-pathnames "ways.svg" (pictures-directory experiment))
                                 :trials trials :part part))

@@ -112,7 +112,7 @@ position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING.
   "Add COST to the cell at POINT, and an eighth of COST to the cells around, until the tick UNTIL."
   (loop for dx from -1 to 1
         do (loop for dy from -1 to 1
-                 do (push (list (mapcar #'+ (cell-of point) (list dx dy))
+                 do (push (list (mapcar #'+ (cell-of-point point) (list dx dy))
                                 (if (= 0 dx dy) cost (floor cost 8))
                                 until)
                           (reckoning-barred me))))
@@ -182,7 +182,7 @@ Return T. If no wall is within two metres, change nothing and return NIL."
     (let ((best nil) (least 2.5))
       (loop for dx from -3 to 3
             do (loop for dy from -3 to 3
-                     for cell = (cell-of (list (+ x dx) (+ y dy)))
+                     for cell = (cell-of-point (list (+ x dx) (+ y dy)))
                      for distance = (apply #'vector-length (mapcar #'- (middle-of cell) (list x y)))
                      when (and (< distance least)
                                (doorway-at (chart-map (reckoning-chart me))

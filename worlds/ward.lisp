@@ -30,26 +30,26 @@
     (and (in-box-p x y room)
          (not (in-box-p x y (list (+ x0 2) (+ y0 2) (- x1 2) (- y1 2)))))))
 
-(defun ward-solid-p (x y)
+(defun ward-occupied-p (x y)
   "True if there is a wall or furniture at the pixel (X, Y) of the ward."
   (flet ((at-p (box) (in-box-p x y box)))
     (or (some #'at-p *ward-furniture*)
         (and (notany #'at-p *ward-doors*)
              (some (lambda (room) (in-wall-of-room-p x y room)) *ward-rooms*)))))
 
-(defun ward-seen-p (x y)
+(defun ward-scanned-p (x y)
   "True if the scanner has seen the pixel (X, Y), which is not behind walls or in the cupboard."
   (and (in-box-p x y '(8 8 121 91))
        (not (in-box-p x y '(113 67 119 79)))))
 
 (defun beside-ward-wall-p (x y)
   (loop for (dx dy) in '((1 0) (-1 0) (0 1) (0 -1))
-           thereis (ward-solid-p (+ x dx) (+ y dy))))
+           thereis (ward-occupied-p (+ x dx) (+ y dy))))
 
 (defun ward-pixel (x y dice)
   "Return the scanner's value for the pixel (X, Y): T for occupied, NIL for free, or UNKNOWN."
-  (cond ((not (ward-seen-p x y)) 'unknown)
-        ((ward-solid-p x y) (if (chance 1/25 dice) 'unknown t))
+  (cond ((not (ward-scanned-p x y)) 'unknown)
+        ((ward-occupied-p x y) (if (chance 1/25 dice) 'unknown t))
         ((beside-ward-wall-p x y) (chance 1/12 dice))
         (t nil)))
 

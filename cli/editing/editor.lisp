@@ -153,7 +153,7 @@ its key ends the line; other values are ignored.")
   "End this process at once."
   (hide-typed-line (edited-console stream))
   (set-paste-marking (edited-console stream) nil)
-  (quit-by-signal))
+  (exit-by-sigquit))
 
 ;;; The history.
 

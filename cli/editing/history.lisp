@@ -93,7 +93,7 @@ GROWING is the text before that line, and the entry has a fill pointer; else GRO
     (when entries (ignore-errors (shorten-history-file file entries)))
     (%make-history :entries entries :file file)))
 
-(defun save-entry (history)
+(defun save-newest-entry (history)
   (destructuring-bind (&optional newest before &rest others) (history-entries history)
     (declare (ignore others))
     (when (and newest (equal newest before))
@@ -111,7 +111,7 @@ GROWING is the text before that line, and the entry has a fill pointer; else GRO
 
 (defun add-entry (history text)
   "Add TEXT, a typed line, to HISTORY, unless TEXT is blank or equals the newest entry."
-  (save-entry history)
+  (save-newest-entry history)
   (setf (history-growing history) nil)
   (unless (or (every #'blank-character-p text) (equal text (first (history-entries history))))
     (push text (history-entries history))
@@ -123,7 +123,7 @@ GROWING is the text before that line, and the entry has a fill pointer; else GRO
        (string= start text :end2 (length start))))
 
 ;; The same text need not be compared for each line to see that it continues.
-(defun extend-entry (history line before)
+(defun extend-newest-entry (history line before)
   "Append LINE, which continues the text BEFORE, to the newest entry of HISTORY. Do nothing unless
 BEFORE begins with that entry."
   (let ((newest (first (history-entries history)))

@@ -62,7 +62,7 @@
              (return (normalize-newlines (utf-8-decoded octets))))
         finally (return (normalize-newlines (utf-8-decoded octets)))))
 
-(defun key-named (control &rest arguments)
+(defun format-as-keyword (control &rest arguments)
   (make-keyword (string-upcase (apply #'format nil control arguments))))
 
 (defun read-key-after-escape (next)
@@ -74,7 +74,7 @@
                        (list key (read-paste next))
                        (or key :unknown))))
       (#\Rubout :meta-rubout)
-      (t (if (graphic-char-p char) (key-named "meta-~A" char) :unknown)))))
+      (t (if (graphic-char-p char) (format-as-keyword "meta-~A" char) :unknown)))))
 
 (defun read-key (next)
   "Read the next key from NEXT and return it; NIL at the end of the input."
@@ -84,7 +84,8 @@
           ((char= char #\Tab) :tab)
           ((find char '(#\Rubout #\Backspace)) :rubout)
           ((char= char +escape+) (read-key-after-escape next))
-          ((< (char-code char) 32) (key-named "control-~C" (code-char (+ 64 (char-code char)))))
+          ((< (char-code char) 32)
+           (format-as-keyword "control-~C" (code-char (+ 64 (char-code char)))))
           (t (read-utf-8-character char next)))))
 
 ;;; The reverse, for keys that are pressed elsewhere than at a terminal.

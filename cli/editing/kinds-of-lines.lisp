@@ -11,7 +11,7 @@
       (#\; t)
       (#\# (and (blank-at-p (1- position)) (blank-at-p (1+ position)))))))
 
-(defun comment-p (text)
+(defun nothing-to-run-p (text)
   "True if TEXT has nothing to run: it is blank, or a comment that begins with ; or a separate #."
   (let ((start (position-if-not #'blank-character-p text)))
     (or (null start) (comment-at-p text start))))
@@ -116,16 +116,16 @@ error, return an empty string."
 
 ;;; If several lines were pasted, prompts tell which of them were typed.
 
-(defun typed-part (line)
+(defun typed-part-of-line (line)
   "Return the part of LINE, a pasted line, that was typed after a prompt; NIL if there is none."
   (cond ((continuation-prompt-p line) (without-pasted-prompt line t))
         ((text-after-prompt line) (let ((text (text-without-prompts line)))
                                    (and (string/= "" text) text)))))
 
-(defun discard-form (text more)
+(defun read-past-form (text more)
   "If TEXT begins with a Lisp form, read that form and discard it. MORE, a function of the text read
 so far, returns the next line of the form, or signals an error at the end."
-  (when (and (not (comment-p text)) (lisp-p text))
+  (when (and (not (nothing-to-run-p text)) (lisp-p text))
     (handler-case (let ((*read-suppress* t))
                     (read-preserving-whitespace (make-growing-text-stream text 0 more)))
       (error () nil))))
@@ -137,12 +137,12 @@ prompts, and the lines after the form. A line typed at a prompt does not belong 
     (flet ((next-of-form (text)
              (declare (ignore text))
              (loop for line = (first lines)
-                   when (or (null lines) (and (text-after-prompt line) (typed-part line)))
+                   when (or (null lines) (and (text-after-prompt line) (typed-part-of-line line)))
                      do (error "No pasted line is left to complete the form.")
                    do (pop lines)
                    unless (text-after-prompt line)
-                     return (first (push (or (typed-part line) line) taken)))))
-      (discard-form text #'next-of-form)
+                     return (first (push (or (typed-part-of-line line) line) taken)))))
+      (read-past-form text #'next-of-form)
       (values (nreverse taken) lines))))
 
 (defun lines-typed-at-prompts (lines)
@@ -150,7 +150,7 @@ prompts, and the lines after the form. A line typed at a prompt does not belong 
 incomplete form count as the rest of the form."
   (loop while lines
         for line = (pop lines)
-        for typed = (typed-part line)
+        for typed = (typed-part-of-line line)
         when typed
           collect typed
           and when (text-after-prompt line)
@@ -175,7 +175,8 @@ prompts except messages, and lines that complete a form. If no line has a prompt
     (dolist (line (lines-typed-at-prompts last)) (setf (gethash line typed) t))
     (count-if-not (lambda (line)
                     (or (gethash line typed)
-                        (text-after-prompt line) (continuation-prompt-p line) (comment-p line)))
+                        (text-after-prompt line) (continuation-prompt-p line)
+                        (nothing-to-run-p line)))
                   last)))
 
 (defun without-pasted-output (text)

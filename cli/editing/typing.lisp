@@ -90,13 +90,13 @@ argument, the function steps back by a character."
 
 ;;; A terminal without escape codes, such as a buffer of Emacs, edits lines itself.
 
-(defun escape-codes-p (stream)
+(defun accepts-escapes-p (stream)
   (and (interactive-stream-p stream)
        (not (member (environment-value "TERM") '(nil "" "dumb" "unknown") :test #'equal))))
 
 (defun make-standard-console ()
   (let ((stream (text-output-stream 1)))
-    (make-console stream (and (escape-codes-p stream) #'window-size))))
+    (make-console stream (and (accepts-escapes-p stream) #'window-size))))
 
 (defun history-pathname ()
   "Return the pathname of the history file named in the environment, or NIL."
@@ -106,7 +106,7 @@ argument, the function steps back by a character."
 (defun make-standard-input (console plain)
   "Return a stream of standard input, edited on CONSOLE if the terminal allows it and PLAIN is NIL."
   (let ((octets (octet-input-stream 0)))
-    (if (and (not plain) (console-window console) (escape-codes-p octets))
+    (if (and (not plain) (console-window console) (accepts-escapes-p octets))
         (make-instance 'edited-text :octets octets :by-hand-p t :console console
                                     :history (make-history (history-pathname)))
         (make-instance 'typed-text :octets octets :by-hand-p (interactive-stream-p octets)))))
@@ -120,14 +120,14 @@ argument, the function steps back by a character."
     (let ((console (edited-console input)))
       (unwind-protect (progn (set-paste-marking console t)
                              (call-in-key-mode function))
-        (save-entry (edited-history input))
+        (save-newest-entry (edited-history input))
         (note-answered console)
         (set-paste-marking console nil)))))
 
 (defgeneric save-history (input)
   (:documentation "Save the history of INPUT now, before this process may end.")
   (:method (input))
-  (:method ((input edited-text)) (save-entry (edited-history input))))
+  (:method ((input edited-text)) (save-newest-entry (edited-history input))))
 
 (defgeneric add-to-history (input line before)
   (:documentation "Add LINE to the history of INPUT. If BEFORE is not NIL, LINE continues the text
@@ -136,7 +136,7 @@ BEFORE and is appended to that entry.")
     (declare (ignore input line before)))
   (:method ((input edited-text) line before)
     (if before
-        (extend-entry (edited-history input) line before)
+        (extend-newest-entry (edited-history input) line before)
         (add-entry (edited-history input) line))))
 
 ;;; Some terminals do not mark pasted text, such as those that edit lines themselves. More than one
@@ -172,7 +172,7 @@ becomes the line being typed."
         (setf (edited-put-off input) (list (ahead-text ahead) (ahead-point ahead))))
       (ahead-lines ahead))))
 
-(defgeneric discard-key (input)
+(defgeneric discard-next-key (input)
   (:documentation "Discard the next key of INPUT, unless more input follows that key at once.")
   (:method (input) (clear-input input))
   (:method ((input edited-text))
@@ -208,7 +208,7 @@ The history file is that of the prompt at the terminal."
 
 (defmethod call-with-typed-input (function (stream window-text))
   (unwind-protect (funcall function)
-    (save-entry (edited-history stream))
+    (save-newest-entry (edited-history stream))
     (note-answered (edited-console stream))))
 
 (defun reading-line-p (stream)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(defparameter *families*
+(defparameter *line-families*
   '((:general . "The prompt") (:seeing . "The robot and its world") (:planning . "Plans")
     (:running . "Running")
     (:moving . "Moving and turning") (:manipulating . "Manipulating"))
@@ -17,7 +17,7 @@
   (remove family (all-line-commands) :key #'line-family :test-not #'eq))
 
 (defun write-main-menu ()
-  (loop for (family . title) in *families*
+  (loop for (family . title) in *line-families*
         for lines = (lines-in-family family)
         do (when lines
              (format t "~A~%" title)

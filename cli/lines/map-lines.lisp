@@ -135,7 +135,7 @@ LEGEND shows only what the characters mean. The names of layers for PICTURE can 
        (not (session-batch-p session))
        (console-edited-p (session-console session))))
 
-(defun screen-text (session simulation options)
+(defun watch-screen-text (session simulation options)
   "Return the text for the screen: the map, and below the map the time and the last message."
   (let ((columns (1- (terminal-size session)))
         (said (last-held-back-line (session-console session))))
@@ -155,14 +155,14 @@ With COUNT, stop also after COUNT ticks or when the run is idle; without COUNT, 
 typed. Return true if a key was pressed."
   (loop with end = (and count (+ (simulation-tick simulation) count))
         with console = (session-console session)
-        do (write-immediately (overwrite-screen-code (screen-text session simulation options))
+        do (write-immediately (overwrite-screen-code (watch-screen-text session simulation options))
                               console)
         until (or (if end
                       (or (>= (simulation-tick simulation) end)
                           (idle-in-session-p session simulation))
                       (typed-ahead-p (session-input session)))
                   (simulation-over simulation)
-                  (session-breaks session))
+                  (session-other-breaks session))
         do (when (octets-within-p (source-stream (session-input session))
                                   (seconds-between-maps session simulation))
              (return t))
@@ -174,7 +174,7 @@ typed. Return true if a key was pressed."
                        (lambda () (watch-until-key session simulation count options))
                        (session-console session))
           (user-interrupt () nil))
-    (discard-key (session-input session)))
+    (discard-next-key (session-input session)))
   (format t "~A~%" (time-description session simulation)))
 
 ;;; The line.

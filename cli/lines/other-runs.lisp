@@ -173,10 +173,10 @@ at the next tick. A second Control-C before that tick leaves the trial."
          (parts (and directory (prepare-condition experiment condition)))
          (row (and directory (row-of-trial experiment condition number directory)))
          (*trace-plans* t))
-    (run-again experiment condition number
-               :journal t
-               :gate (make-trial-gate session trial)
-               :then (lambda (result) (read-lines-after-trial session trial result parts row)))))
+    (rerun-trial experiment condition number
+                 :journal t
+                 :gate (make-trial-gate session trial)
+                 :then (lambda (result) (read-lines-after-trial session trial result parts row)))))
 
 (defun call-with-run-paused (function)
   "Pause the current live simulation, if any, while calling FUNCTION."
@@ -284,7 +284,7 @@ line that opens such a trial."
       (setf (session-jobs session) jobs
             (session-forks session) depth))))
 
-(defun continue-in-fork (session seed)
+(defun enter-new-fork (session seed)
   "Run SESSION in a fork of the current run until a line leaves the fork; then discard the fork."
   (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
     (keep-forks t fork)
@@ -308,10 +308,10 @@ With SEED, the copy has other random numbers. The run itself is paused. FORK OFF
 and returns to the run, which has not changed."
   (check-run-not-over)
   (cond ((session-trial session) (reject-line "A trial cannot be forked. TRIAL OFF leaves it."))
-        ((null seed) (continue-in-fork session nil))
+        ((null seed) (enter-new-fork session nil))
         ((string-equal seed "off")
          (when (zerop (session-forks session)) (reject-line "The prompt is not in a fork."))
          (throw 'left-fork t))
-        (t (continue-in-fork session (or (ignore-errors (parse-integer seed))
-                                         (reject-line "The seed of a fork is an integer, not ~A."
-                                                      seed))))))
+        (t (enter-new-fork session (or (ignore-errors (parse-integer seed))
+                                       (reject-line "The seed of a fork is an integer, not ~A."
+                                                    seed))))))

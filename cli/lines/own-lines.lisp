@@ -80,7 +80,7 @@ Signals BAD-LINE if the line waits for RESUME. INBOX lists the requests that wai
 (defun run-repeated-line (session cmd)
   "Run the line CMD, and wait for the commands that the line issues, unless SESSION is in a trial."
   (let ((before (session-jobs session)) (inbox (waiting-requests)))
-    (run-text session cmd)
+    (run-typed-line session cmd)
     (unless (session-trial session)
       (await-repeated-line session cmd
                            (remove-if (lambda (job) (member job before))

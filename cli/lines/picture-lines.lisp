@@ -30,7 +30,7 @@ or BARE, which omits the default layers."
           (loop for layer in layers
                 for name = (substitute #\Space #\- (symbol-name layer))
                 for title = (layer-title layer)
-                collect (list (layer-prompt-names layer)
+                collect (list (layer-prompt-text layer)
                               (and (not (string-equal title name)) (string-downcase title))))))
 
 (define-line "PICTURE" (session (file :file "a name that ends in .svg or .png")
@@ -75,7 +75,7 @@ ANYWAY saves the film even if definitions have changed since the run began."
 ;;; program's second core, for --window, has it already; the first one, and a Lisp of the user's,
 ;;; load it when a window is opened.
 
-(defun call-or-reject (function trouble)
+(defun load-or-reject (function trouble)
   "Call FUNCTION, which compiles and loads libraries, with Lisp's standard syntax and without
 output. After an error, signal BAD-LINE with TROUBLE, a format control for the error's text."
   (handler-case
@@ -90,10 +90,10 @@ output. After an error, signal BAD-LINE with TROUBLE, a format control for the e
 (defun load-window-system (quicklisp-p)
   "Load the system ars-magna/clim. If QUICKLISP-P, load McCLIM through Quicklisp first."
   (when quicklisp-p
-    (call-or-reject #'ars-magna.clx:load-by-quicklisp
+    (load-or-reject #'ars-magna.clx:load-by-quicklisp
                      "No window: Quicklisp could not get McCLIM (~A). Check the network, ~
                       then type WINDOW again."))
-  (call-or-reject (lambda () (asdf:load-system "ars-magna/clim"))
+  (load-or-reject (lambda () (asdf:load-system "ars-magna/clim"))
                "No window: McCLIM was found, but cannot be loaded: ~A"))
 
 ;; Read when this file is loaded, so that a saved program has it with it.

@@ -69,7 +69,7 @@ package. Return NIL if there is no such plan."
     (check-run-not-over)
     (setf (session-failure session) nil)
     (pushnew (procedure-name plan) (session-plans session))
-    (let ((task (let ((*robot-to-drive* #'session-robot))
+    (let ((task (let ((*commanded-robot-hook* #'session-robot))
                   (start-plan-job job plan arguments))))
       (push job (session-jobs session))
       (note-plan-of-line (session-account session) task)
@@ -97,7 +97,7 @@ at once, otherwise when the plan has ended."
 
 ;;; Those under way.
 
-(defun call-in-plan-package (name function)
+(defun text-in-plan-package (name function)
   "Call FUNCTION, which returns text with forms of the plan named NAME. Return the text with few
 package prefixes, as an author of the plan would write the forms."
   (let* ((plan (find-plan-named (string name)))
@@ -120,7 +120,7 @@ package prefixes, as an author of the plan would write the forms."
 ended has failed, tell where and why it failed."
   (let ((plans (plans)))
     (if plans
-        (write-string (call-in-plan-package (task-name (first plans))
+        (write-string (text-in-plan-package (task-name (first plans))
                                             (lambda ()
                                               (with-output-to-string (out) (print-plans out)))))
         (format t "No plan is under way. PLAN lists all plans.~%")))
@@ -128,7 +128,7 @@ ended has failed, tell where and why it failed."
     (destructuring-bind (failure name) (session-failure session)
       (let ((*message-queue* (make-message-queue)))
         (format t "The last plan failed: ~A~&"
-                (call-in-plan-package name (lambda ()
+                (text-in-plan-package name (lambda ()
                                              (report-failure failure)
                                              (message-text (first (take-messages))))))))))
 
@@ -146,7 +146,7 @@ ended has failed, tell where and why it failed."
   "Return the full stacks and variables of WHICH, a task or a plan runner with plans, as text."
   (let ((plan (loop for task = (if (task-p which) which (first (plans))) then (task-parent task)
                     unless (task-parent task) return task)))
-    (call-in-plan-package (task-name plan)
+    (text-in-plan-package (task-name plan)
                           (lambda () (with-output-to-string (out) (print-tasks which out t))))))
 
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
@@ -163,7 +163,7 @@ variables, what it waits for and since when; and which task owns which valve."
           (t (reject-line "No task ~D is under way. PLANS lists the tasks." n)))))
 
 (defun task-why-text (n)
-  (call-in-plan-package
+  (text-in-plan-package
    (let ((plan (first (plans)))) (and plan (task-name plan)))
    (lambda ()
      (with-output-to-string (out)

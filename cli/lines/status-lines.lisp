@@ -165,7 +165,7 @@ line tells if no ticks pass now. In Lisp: (status)."
 ;;; In Lisp NIL is nothing, false or the empty list, and a list may be a property list or not. So
 ;;; the kinds of such values are listed here by key.
 
-(defparameter *json-kinds-of-keys*
+(defparameter *keys-by-json-kind*
   '((:objects :cameras :hands :bins :sensors :under-way :interrupted :designators)
     (:lists :view :contents :slots :data)
     (:truths :live :closed))
@@ -177,14 +177,14 @@ line tells if no ticks pass now. In Lisp: (status)."
       value))
 
 (defun value-for-json (key value)
-  (case (first (find-if (lambda (kind) (member key (rest kind))) *json-kinds-of-keys*))
+  (case (first (find-if (lambda (kind) (member key (rest kind))) *keys-by-json-kind*))
     (:objects (map 'vector #'object-for-json value))
     (:truths (if value t :false))
     (:lists (if value (lists-to-arrays value) #()))
     (t (if (eq key :failed) (object-for-json value) (lists-to-arrays value)))))
 
 (defun object-for-json (plist)
-  "Return PLIST with its values converted for WRITE-JSON, as *JSON-KINDS-OF-KEYS* says."
+  "Return PLIST with its values converted for WRITE-JSON, as *KEYS-BY-JSON-KIND* says."
   (loop for (key value) on plist by #'cddr
         collect key
         collect (value-for-json key value)))

@@ -185,7 +185,7 @@
     ("experiment" all-experiments experiment-name experiment-description)
     ("error code" error-codes-with-commands error-code-topic-name error-code-description)
     ("error code" common-error-codes identity common-error-code-description)
-    ("restart" all-restarts identity restart-description)
+    ("restart" restart-name-list identity restart-description)
     ("subject" all-subjects first subject-description)
     ("name of a library" names-in-optional-system identity optional-name-description)
     (lisp-name-kind documented-names identity lisp-name-description write-lisp-topic))
@@ -235,7 +235,7 @@ WRITER prints the object's help. TITLE is a text or a function of an object.")
 
 ;;; Subjects that are no names in the simulator: keys, units, scripts.
 
-(defparameter *subjects*
+(defparameter *help-subjects*
   '(("KEYS" "At a terminal or in a window you edit a line as in a shell or Emacs. Left, right, Home,
 End, control-A and control-E move in it; with Alt or control, left and right go by words. Backspace,
 Delete and control-D delete a character, control-W the word before, control-U and control-K all
@@ -260,6 +260,6 @@ numeric).")
 --color never."))
   "Lists (name text): subjects of HELP that are not names in the simulator.")
 
-(defun all-subjects () *subjects*)
+(defun all-subjects () *help-subjects*)
 
 (defun subject-description (subject) (one-line (second subject)))

@@ -260,7 +260,7 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
         (push symbol found)))
     (sort found #'string<)))
 
-(defun user-symbols ()
+(defun reference-symbols ()
   "Return the symbols for users: public symbols, and the exports of ARS-WORLDS and ARS-FIVEAM."
   (remove-duplicates (append (public-symbols :ars) (public-symbols :nisp)
                              (exported-symbols :ars-worlds) (exported-symbols :ars-fiveam))
@@ -275,7 +275,7 @@ Things are given as designators, the hand as a part of a robot, such as `(robot-
   (let ((told (let ((table (make-hash-table :test 'eq)))
                 (dolist (entry others table)
                   (when (entry-symbol entry) (setf (gethash (entry-symbol entry) table) t))))))
-    (loop for symbol in (user-symbols)
+    (loop for symbol in (reference-symbols)
           unless (or (gethash symbol told) (has-other-entry-p symbol others))
             collect (symbol-entry symbol))))
 

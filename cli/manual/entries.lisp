@@ -48,7 +48,7 @@
   (format nil "reference-~(~A~).html" chapter))
 
 (defun entry-address (entry)
-  (format nil "~A#~A" (chapter-file (entry-chapter entry)) (anchor (entry-name entry))))
+  (format nil "~A#~A" (chapter-file (entry-chapter entry)) (entry-anchor (entry-name entry))))
 
 (defun entry-key (entry)
   (string-downcase (entry-name entry)))
@@ -123,7 +123,7 @@
 (defun code-markup (name)
   (format nil "`~(~A~)`" name))
 
-(defun heading-text (keyword)
+(defun keyword-heading (keyword)
   (let ((words (substitute #\Space #\- (string-downcase keyword))))
     (string-upcase words :end 1)))
 
@@ -160,7 +160,7 @@
 
 (defun command-entry (command)
   (make-entry :name (string-downcase (command-name command)) :chapter :commands
-              :section (heading-text (command-family command)) :symbol (command-name command)
+              :section (keyword-heading (command-family command)) :symbol (command-name command)
               :use (format nil "(~(~A ~A~{ ~A~}~) [continuation])" (command-name command)
                            (spec-name (command-resource command))
                            (mapcar #'spec-name (command-parameters command)))
@@ -220,7 +220,7 @@ run (manual 3.1.1)."))
 
 (defun line-entry (line)
   (make-entry :name (string-downcase (line-name line)) :chapter :prompt
-              :section (heading-text (line-family line)) :use (line-command-usage line)
+              :section (keyword-heading (line-family line)) :use (line-command-usage line)
               :facts (append (when (line-full-name line)
                                (list (list "Stands for"
                                            (code-markup (line-full-name line)))))

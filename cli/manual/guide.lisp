@@ -78,7 +78,7 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
 (defun known-page (source)
   (rest (assoc source *known-pages* :test #'string=)))
 
-(defun page-part (page)
+(defun contents-part (page)
   "Return the part of the contents for PAGE: :LEARNING, :GUIDE, :EXAMPLES, :INSIDE or :ABOUT."
   (let ((source (page-source page)))
     (cond ((third (known-page source)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.manual)
 
-(export '(escape-html anchor html-tokens tag-p tag-name attribute-value))
+(export '(escape-html entry-anchor html-tokens tag-p tag-name attribute-value))
 
 (defun escape-html (text)
   "Return TEXT escaped for HTML, between tags or in an attribute's double quotes."
@@ -33,7 +33,7 @@
 (defun plain-char-p (char)
   (or (char<= #\a char #\z) (char<= #\0 char #\9) (char= char #\-)))
 
-(defun anchor (name)
+(defun entry-anchor (name)
   "Return the id of the entry NAME on its page. Different names have different ids, and no character
 of an id needs escaping in addresses."
   (with-output-to-string (out)

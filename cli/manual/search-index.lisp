@@ -101,8 +101,9 @@
   "Lists (name synonym...). A search for a synonym first shows the entry or heading called NAME.
 Synonyms leave out a, an, the and my, because the search ignores these words.")
 
-(defstruct (row (:constructor make-row (name kind address sentence &optional (words "")))
-                (:copier nil))
+(defstruct (index-row (:constructor make-index-row
+                                    (name kind address sentence &optional (words "")))
+                      (:copier nil))
   "A row of the search: NAME, linked to ADDRESS, then KIND and SENTENCE. WORDS are searched, too."
   (name "" :type string :read-only t)
   (kind "" :type string :read-only t)
@@ -122,28 +123,30 @@ Synonyms leave out a, an, the and my, because the search ignores these words.")
 (defun page-rows (page)
   "Return rows for the headings of PAGE. On pages of the guide, a row has the words of its section."
   (loop for (nil id text words) in (headings (page-tokens page))
-        collect (make-row text (page-title page) (format nil "~A#~A" (page-file page) id) ""
-                          (if (member (page-part page) '(:learning :guide))
-                              (format nil "~{~A~^ ~}" (distinct-words words))
-                              ""))))
+        collect (make-index-row text (page-title page) (format nil "~A#~A" (page-file page) id) ""
+                                (if (member (contents-part page) '(:learning :guide))
+                                    (format nil "~{~A~^ ~}" (distinct-words words))
+                                    ""))))
 
 (defun entry-row (entry)
-  (make-row (entry-name entry) (chapter-title (entry-chapter entry)) (entry-address entry)
-            (first-full-sentence (entry-text entry))))
+  (make-index-row (entry-name entry) (chapter-title (entry-chapter entry)) (entry-address entry)
+                  (first-full-sentence (entry-text entry))))
 
 (defun synonym-rows (rows)
   (loop for (name . synonyms) in *synonyms*
-        for target = (find name rows :key #'row-name :test #'string-equal)
+        for target = (find name rows :key #'index-row-name :test #'string-equal)
         when target
           append (loop for synonym in synonyms
-                       collect (make-row synonym (format nil "see ~A" (row-name target))
-                                         (row-address target) (row-sentence target)))))
+                       collect (make-index-row synonym (format nil "see ~A" (index-row-name target))
+                                               (index-row-address target)
+                                               (index-row-sentence target)))))
 
 (defun row-text (row)
   (format nil "[~{~A~^,~}]"
           (mapcar #'javascript-string
-                  (list (row-name row) (row-kind row) (row-address row) (row-sentence row)
-                        (row-words row)))))
+                  (list (index-row-name row) (index-row-kind row) (index-row-address row)
+                        (index-row-sentence row)
+                        (index-row-words row)))))
 
 (defun write-index (out book)
   "Write the search index to OUT as JavaScript: synonyms first, before equally good rows."

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.manual)
 
-(export '(examples-of-entry write-manual main))
+(export '(examples-of-entry write-manual manual-main))
 
-(defparameter *version* (asdf:component-version (asdf:find-system "ars-magna")))
+(defparameter *project-version* (asdf:component-version (asdf:find-system "ars-magna")))
 
 (defparameter *top-links*
   '(("index.html" "Contents") ("introduction.html" "Introduction") ("tutorial.html" "Tutorial")
@@ -35,7 +35,7 @@
 </body>
 </html>
 "
-          (escape-html title) *top-links* body *version*))
+          (escape-html title) *top-links* body *project-version*))
 
 (defun list-html (items)
   (format nil "<ul>~%~{<li>~A</li>~%~}</ul>~%" items))
@@ -59,7 +59,7 @@
 ;;; The first page.
 
 (defun page-list-html (part book)
-  (list-html (loop for page in (remove part (book-pages book) :key #'page-part :test-not #'eq)
+  (list-html (loop for page in (remove part (book-pages book) :key #'contents-part :test-not #'eq)
                    collect (link-html (page-file page) (escape-html (page-title page))))))
 
 (defun chapters-in (book)
@@ -145,7 +145,7 @@
 (defun entry-html (entry book)
   (format nil "<section id=\"~A\">~%<h3>~A</h3>~%~@[<p class=\"use\"><code>~A</code></p>~%~]~A~A~A~
                ~@[<p class=\"from\">~A</p>~]~%</section>~%"
-          (anchor (entry-name entry)) (escape-html (entry-name entry))
+          (entry-anchor (entry-name entry)) (escape-html (entry-name entry))
           (and (string/= (entry-use entry) (entry-name entry)) (escape-html (entry-use entry)))
           (docstring-html (entry-text entry) book (names-in-lisp (entry-use entry)))
           (if (entry-facts entry)
@@ -158,10 +158,10 @@
   (format nil "~@[~A~]~A~{~A~}"
           (and (string/= "" section)
                (format nil "<h2 id=\"section-~A\">~A</h2>~%"
-                       (anchor section) (escape-html section)))
+                       (entry-anchor section) (escape-html section)))
           (format nil "<p class=\"names\">~{~A~^, ~}</p>~%"
                   (mapcar (lambda (entry)
-                            (link-html (format nil "#~A" (anchor (entry-name entry)))
+                            (link-html (format nil "#~A" (entry-anchor (entry-name entry)))
                                        (escape-html (entry-name entry))))
                           entries))
           (mapcar (lambda (entry) (entry-html entry book)) entries)))
@@ -207,7 +207,7 @@
 (defun call-with-manual-file (function name directory)
   (call-replacing-file function (merge-pathnames (native-path name) directory)))
 
-(defun copy-into (name source directory)
+(defun copy-file-into (name source directory)
   (let ((copy (merge-pathnames (native-path name) directory)))
     (make-directories (uiop:pathname-directory-pathname copy))
     (check-writable copy)
@@ -235,12 +235,12 @@
     (make-directories directory)
     (write-pages book directory)
     (dolist (name '("style.css" "search.js"))
-      (copy-into name (project-path (format nil "cli/manual/~A" name)) directory))
+      (copy-file-into name (project-path (format nil "cli/manual/~A" name)) directory))
     (dolist (name (book-files book))
-      (copy-into (copied-file-name name) (project-path name) directory))
+      (copy-file-into (copied-file-name name) (project-path name) directory))
     (merge-pathnames "index.html" directory)))
 
-(defun main (directory)
+(defun manual-main (directory)
   "Write the manual into DIRECTORY, a name. Print the path of the first page, or the error. Return
 the exit status."
   (handler-case (progn (format t "~A~%" (native-name (write-manual directory)))

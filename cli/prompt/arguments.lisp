@@ -62,7 +62,7 @@ typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE
 
 ;;; Reading.
 
-(defun refuse-syntax (stream char argument)
+(defun reject-reader-macro (stream char argument)
   (declare (ignore stream argument))
   (error "#~C can be used only in Lisp, not as an argument" char))
 
@@ -70,7 +70,7 @@ typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE
   "Return the Lisp datum in TEXT at START and the position of its end. Signal errors for #. and #S."
   (let ((*read-eval* nil) (*readtable* (copy-readtable)))
     ;; That makes objects by calling functions.
-    (set-dispatch-macro-character #\# #\S #'refuse-syntax)
+    (set-dispatch-macro-character #\# #\S #'reject-reader-macro)
     (read-from-string text t nil :start start :preserve-whitespace t)))
 
 (defun strip-quote (datum)
@@ -208,7 +208,7 @@ included. Return NIL if the choices are not known. May signal BAD-LINE, as witho
 ;;; Worlds and robots.
 
 (defmethod argument-choices ((type (eql :world)) session typed)
-  (append (mapcar #'map-name (all-worlds))
+  (append (mapcar #'map-name (maps-with-robots))
           (remove-if-not (lambda (file)
                            (or (uiop:string-suffix-p file "/") (uiop:string-suffix-p file ".lisp")))
                          (argument-choices :file session typed))))

@@ -83,14 +83,14 @@ Any thread may call this function."
 (defun other-debugger-text (simulation)
   "If a debugger other than the prompt's asks about a break in the thread of SIMULATION, return the
 end of a sentence that says so; otherwise NIL."
-  (let ((debugger (asking-debugger-text (simulation-thread simulation))))
+  (let ((debugger (waiting-debugger-name (simulation-thread simulation))))
     (and debugger
          (notany #'simulator-broken-p (sessions-showing simulation))
          (format nil "and ~A waits for the answer" debugger))))
 
 (defun valid-at-any-break-p (text)
   "True if the line TEXT is Lisp or a comment, and so is valid whatever break is being answered."
-  (or (comment-p text) (lisp-p text)))
+  (or (nothing-to-run-p text) (lisp-p text)))
 
 ;;;; Who is asked
 
@@ -115,13 +115,13 @@ end of a sentence that says so; otherwise NIL."
 (defmethod hook-of-front-end ((prompts prompts))
   (and *prompt-debugger-hooks* (shared-debugger-hook)))
 
-(defun begin-sharing-hook (hook)
+(defun add-prompt-hook (hook)
   (with-lock (*sessions-lock*)
     (unless *prompt-debugger-hooks* (setf *hook-before-prompts* (global-debugger-hook)))
     (push hook *prompt-debugger-hooks*)
     (setf (global-debugger-hook) (shared-debugger-hook))))
 
-(defun end-sharing-hook (hook)
+(defun remove-prompt-hook (hook)
   (with-lock (*sessions-lock*)
     (setf *prompt-debugger-hooks* (remove hook *prompt-debugger-hooks* :count 1)
           (global-debugger-hook) (shared-debugger-hook))))
@@ -136,9 +136,9 @@ end of a sentence that says so; otherwise NIL."
   (with-debugger-hook (hook)
     (if (other-front-end-answers-p)
         (funcall function)
-        (progn (begin-sharing-hook hook)
+        (progn (add-prompt-hook hook)
                (unwind-protect (funcall function)
-                 (end-sharing-hook hook))))))
+                 (remove-prompt-hook hook))))))
 
 ;;; Programs that read typed input in the thread of a run or of plans.
 

@@ -209,7 +209,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
   "Return the largest number of characters in a line of text for SESSION, at most 79."
   (if (session-terminal-p session) (clamp (1- (size-of-window session)) 40 79) 79))
 
-(defun run-line (session line text)
+(defun run-line-command (session line text)
   "Run the line command LINE with the arguments in TEXT. Write its output in one piece."
   (let ((arguments (read-arguments line text))
         (*text-width* (text-width session))
@@ -227,11 +227,11 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
       (call-with-page-width (lambda () (evaluate-text session text)) (1- (size-of-window session)))
       (evaluate-text session text)))
 
-(defun run-text (session text)
+(defun run-typed-line (session text)
   "Run the typed line TEXT, and mark its requests as requests of the prompt."
   (let* ((*asker* (asker-for (session-account session)))
          (*request-origin* *asker*))
-    (cond ((comment-p text))
+    (cond ((nothing-to-run-p text))
           ((lisp-p text) (evaluate-line session text))
           (t (let ((text (expand-alias text)))
                (if (lisp-p text)
@@ -239,7 +239,7 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
                    (multiple-value-bind (name rest) (split-first-word text)
                      (warn-of-command-in-comment text)
                      (check-utf-8 session text 0 nil)
-                     (run-line session (find-line-command name) rest))))))))
+                     (run-line-command session (find-line-command name) rest))))))))
 
 ;;;; Errors
 
@@ -343,5 +343,5 @@ was running. Abort users' code that blocks the simulator, too."
                                            (lambda ()
                                              (handler-bind ((error #'look-into)
                                                             (user-interrupt #'look-whose))
-                                               (call-with-held-interrupts function)))))
+                                               (call-releasing-interrupts function)))))
         (user-interrupt () (report-interrupt session whose))))))

@@ -137,7 +137,7 @@ followed by AFTER if there is one text. If that adds nothing to the line, list T
     (and end
          (find (subseq text (1+ colon) end) (attribute-keys) :test #'string-equal))))
 
-(defun known-values (key)
+(defun values-of-attribute (key)
   "Return the values that the attribute named KEY declares. Return NIL if there are none or no KEY."
   (and key (attribute-domain (declared-attribute key))))
 
@@ -183,7 +183,7 @@ functions and macros. If TYPED begins with a colon, return keywords of OPERATOR 
                (operator-p (and (plusp start) (char= #\( (char text (1- start))))))
           (values start
                   (and (string/= "" typed)
-                       (or (matching-texts typed (known-values (last-attribute text start)))
+                       (or (matching-texts typed (values-of-attribute (last-attribute text start)))
                            (matching-texts typed (symbol-choices typed operator-p
                                                                  (operator-at text start)))))
                   "")))))
@@ -196,7 +196,7 @@ functions and macros. If TYPED begins with a colon, return keywords of OPERATOR 
     (values start
             (matching-texts typed (if (or (null key) (starts-with-subseq ":" typed))
                                       (attribute-keys)
-                                      (known-values key)))
+                                      (values-of-attribute key)))
             "")))
 
 ;;; Arguments.
@@ -284,7 +284,7 @@ them if QUOTED-P is true (the argument begins with a double quote) or one of TEX
   "Complete TEXT, typed in SESSION, at the position POINT. Return the start of the part to complete,
 a list of all completions, and the text to add after a single completion."
   (let* ((text (subseq text 0 point))
-         (break-request (first (session-breaks session))))
+         (break-request (first (session-other-breaks session))))
     (handler-case
         (cond ((starts-with-subseq "(" (string-left-trim " " text))
                (lisp-completions session text point))

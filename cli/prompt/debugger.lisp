@@ -27,7 +27,7 @@
 
 (defun call-in-broken-thread (session break-request function)
   "Make BREAK-REQUEST's thread call FUNCTION. Wait until FUNCTION returns or the thread continues."
-  (cond ((broken-here-p break-request) (funcall function))
+  (cond ((own-thread-break-p break-request) (funcall function))
         (t (post-call-to-thread session break-request function)
            (wait-on-semaphore (break-request-done break-request)))))
 
@@ -55,7 +55,7 @@
 
 (defun run-debug-line (session break-request text)
   (flet ((says-p (word) (string-equal word (split-first-word text))))
-    (cond ((comment-p text))
+    (cond ((nothing-to-run-p text))
           ((lisp-p text) (let ((form (read-form session text)))
                            (call-in-broken-thread session break-request
                                                   (lambda ()
@@ -73,7 +73,8 @@
 (defun continue-by-restart (session break-request restart rest)
   "Continue the thread of BREAK-REQUEST by RESTART. If RESTART needs a value, read the value from
 REST or, if REST is blank, from the next line."
-  (let* ((needs-value-p (and (restart-needs-value-p restart) (not (broken-here-p break-request))))
+  (let* ((needs-value-p (and (restart-needs-value-p restart)
+                             (not (own-thread-break-p break-request))))
          (answer (cond ((not needs-value-p) nil)
                        ((every #'blank-character-p rest) (read-input session "Value> "))
                        (t rest))))
@@ -101,16 +102,16 @@ other threads wait until FUNCTION returns."
          (before (shiftf (break-state-own state) break-request)))
     (unwind-protect (funcall function)
       (setf (break-state-own state) before)
-      (when (and (session-breaks session) (not before) (not (session-over-p session)))
-        (show-break session (first (session-breaks session)))))))
+      (when (and (session-other-breaks session) (not before) (not (session-over-p session)))
+        (show-break session (first (session-other-breaks session)))))))
 
 (defun answer-earlier-breaks (session break-request)
   "BREAK-REQUEST is this thread's break. Read lines that answer earlier breaks in other threads."
-  (let ((breaks (copy-list (session-breaks session))))
+  (let ((breaks (copy-list (session-other-breaks session))))
     (when breaks (report-waiting-break session break-request))
     (dolist (other breaks)
       (unless (break-request-told-p other) (show-break session other))
-      (loop while (member other (session-breaks session))
+      (loop while (member other (session-other-breaks session))
             until (session-over-p session)
             do (call-reporting-session-errors
                 session (lambda () (read-debug-line session other)))))))
@@ -118,7 +119,7 @@ other threads wait until FUNCTION returns."
 (defun announce-break (session break-request)
   "Report another thread's BREAK-REQUEST in SESSION; with its restarts if the user can answer now."
   (if (or (break-state-own (session-break-state session))
-          (not (eq break-request (first (session-breaks session)))))
+          (not (eq break-request (first (session-other-breaks session)))))
       (report-waiting-break session break-request)
       (show-break session break-request)))
 
@@ -158,7 +159,7 @@ sessions' threads post, until a call continues this thread."
     (dolist (session sessions) (remove-break session break-request))))
 
 ;; A user's window may be lost although there is another, or the terminal.
-(defun substitute-sessions (session)
+(defun replacement-sessions (session)
   "If the user of SESSION was lost, return the sessions whose users can answer its breaks: sessions
 in the same run, else all sessions. Return NIL if the user ended SESSION."
   (flet ((can-answer-p (other)
@@ -185,7 +186,7 @@ in the same run, else all sessions. Return NIL if the user ended SESSION."
                           (call-outside-trial #'read-lines)
                           (read-lines)))))
   ;; Others may say how to continue if its user no longer can.
-  (let ((others (substitute-sessions session)))
+  (let ((others (replacement-sessions session)))
     (when others
       (await-break-answer
        others (break-request-for-condition (break-request-condition break-request) others))))
@@ -196,7 +197,7 @@ in the same run, else all sessions. Return NIL if the user ended SESSION."
   "If this thread runs a prompt's line, read answers to other threads' breaks until no break waits."
   (let ((session *session*))
     (when (and session (eq (session-thread session) (current-thread)) (not *showing-messages-p*))
-      (loop for break-request = (first (session-breaks session))
+      (loop for break-request = (first (session-other-breaks session))
             while break-request
             do (when (session-over-p session) (invoke-restart 'end-line))
                (call-reporting-session-errors
@@ -206,7 +207,7 @@ in the same run, else all sessions. Return NIL if the user ended SESSION."
   "Invoke the innermost of the restarts ABORT and END-LINE for CONDITION."
   (invoke-restart (or (find-if (lambda (restart)
                                  (member (restart-name restart) '(abort end-line)))
-                               (restarts-of-line condition))
+                               (restarts-within-line condition))
                       'abort)))
 
 (define-event *break-hooks*
@@ -241,7 +242,7 @@ and Lisp runs other programs, too."
   (setf *own-process-p* t
         (debugger-hook) 'debugger-disabled-hook))
 
-(defun exit-for-unhandled (condition)
+(defun exit-after-unhandled-error (condition)
   "End this process, which is starting or ending, because nothing handles CONDITION."
   (when (typep condition 'user-interrupt) (exit-after-interrupts))
   (say-on-error-output (condition-text condition))
@@ -282,7 +283,7 @@ hook, not its debugger, if there is no terminal or window, or a break is being a
   (cond (*session*
          (report-session-error *session* (format nil "Break: ~A" (condition-text condition))))
         ((and *own-process-p* (users-thread-p)) (report-thread-error condition))
-        (*own-process-p* (exit-for-unhandled condition)))
+        (*own-process-p* (exit-after-unhandled-error condition)))
   (unless (typep condition 'serious-condition) (continue condition))
   (abort-by-restart condition))
 
@@ -318,7 +319,7 @@ hook, not its debugger, if there is no terminal or window, or a break is being a
 
 (defun continue-orphaned-breaks (session)
   "Continue all breaks that wait only for SESSION, which is over."
-  (dolist (break-request (session-breaks session))
+  (dolist (break-request (session-other-breaks session))
     (unless (removef (break-request-sessions break-request) session)
       (continue-orphaned-break session break-request))))
 

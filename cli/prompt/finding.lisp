@@ -69,7 +69,7 @@
     (("PRINT" "ECHO" "LET") "A line in parentheses is Lisp: (print (robot-names))."))
   "Lists (words hint): words that newcomers type although they name no line command, and a hint.")
 
-(defun hint-for (name)
+(defun newcomer-hint (name)
   (second (find-if (lambda (hint) (member name (first hint) :test #'string=)) *newcomer-hints*)))
 
 ;;; Advice for words that are not lines.
@@ -99,7 +99,7 @@ type the line command; else NIL."
     (and place (plusp place) (line-command-advice (subseq name 0 place)))))
 
 (defun reject-unknown-command (name)
-  (let ((hint (or (hint-for name) (plan-advice name) (parameter-advice name) (call-advice name)
+  (let ((hint (or (newcomer-hint name) (plan-advice name) (parameter-advice name) (call-advice name)
                   (and (public-function-named name)
                        (format nil "~A is Lisp, in parentheses: (~(~:*~A~) ...)." name)))))
     (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
@@ -120,7 +120,7 @@ commands, return the one whose name is the beginning of all the others. Otherwis
                                                                 (line-name other)))
                                           candidates))
                     candidates))
-          (t (reject-ambiguous name (mapcar #'line-name candidates) (hint-for name))))))
+          (t (reject-ambiguous name (mapcar #'line-name candidates) (newcomer-hint name))))))
 
 (defun find-line-command (name)
   "Return the line command for NAME, a string of any case. NAME may be the command's name, the full

@@ -24,7 +24,7 @@ the outcome itself. RESOURCE is the robot or part that carries out a single comm
   (resource nil :read-only t))
 
 ;; It belongs to the prompt, even if it leads on from a run.
-(define-shared job)
+(define-shared-types job)
 
 (defun waiting-requests ()
   (and *simulation* (timeline-inbox (timeline-of *simulation*))))
@@ -45,7 +45,7 @@ the outcome itself. RESOURCE is the robot or part that carries out a single comm
 
 (defun paused-for-good-p (simulation)
   "True if SIMULATION, which is live, is paused, and no one can resume it."
-  (and (not *waits-while-paused-p*) (paused-without-steps-p simulation)))
+  (and (not *user-can-resume-p*) (paused-without-steps-p simulation)))
 
 (defun await-test-live (test simulation)
   (let ((true (make-semaphore "fact")))
@@ -150,7 +150,7 @@ SESSION and its Lisp are done."
                    (and (shiftf (session-lisp-p session) nil)
                         (not (await-requests))
                         (paused-for-good-p *simulation*)))
-             (call-whereabouts-hooks session))
+             (call-before-line-hooks session))
       (setf (session-jobs session) (jobs-under-way session))))
 
 (defun waits-for-resume-p (session)

@@ -13,9 +13,9 @@ that signals the error, such as a kicker."
   (code nil)
   (tick 0 :type integer))
 
-(defun item-at-fault (message)
+(defun faulty-code-item (message)
   "Return the item of MESSAGE that names a faulty recurring function, such as a kicker; or NIL."
-  (find-if #'recurring-code (message-items message)))
+  (find-if #'recurring-function (message-items message)))
 
 (defun message-tick (message)
   (let ((run (message-run message)))
@@ -23,8 +23,8 @@ that signals the error, such as a kicker."
 
 (defun tally-for (message counts)
   (let* ((text (message-text message))
-         (code (let ((item (item-at-fault message)))
-                 (and item (recurring-code item))))
+         (code (let ((item (faulty-code-item message)))
+                 (and item (recurring-function item))))
          (tally (gethash text counts)))
     (cond ((and tally (eq code (tally-code tally)) (<= (tally-tick tally) (message-tick message)))
            tally)
@@ -45,13 +45,13 @@ that signals the error, such as a kicker."
   "Return text on how often MESSAGE was reported, from the table COUNTS; NIL if not often."
   (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) counts)))
          (count (if tally (tally-count tally) 0))
-         (item (item-at-fault message)))
+         (item (faulty-code-item message)))
     (when (<= 3 count)
       (format nil "This error has come up ~D times; it is shown again at ~D times.~@[ ~A~] ~
                    PAUSE stops time.~%"
               count
               (loop for next = 10 then (* 10 next) when (< count next) return next)
-              (and item (recurring-remedy item))))))
+              (and item (stop-recurring-remedy item))))))
 
 (defun reset-line-error-counts (counts)
   (maphash (lambda (text tally) (unless (tally-code tally) (remhash text counts))) counts))

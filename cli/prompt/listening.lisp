@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-(export '(*whereabouts-hooks* show-definition-messages go-to-run run-to-continue-in announce-run
+(export '(*before-line-hooks* show-definition-messages make-run-current run-to-continue-in
+                              announce-run
           live-run-of-robot run-description in-trial-or-fork-p trial-or-fork-text
           trial-or-fork-pace))
 
@@ -96,7 +97,7 @@ again. Do nothing if SESSION has lost its user."
 
 ;;; Listening to a simulation.
 
-(defun handle-message (session simulation)
+(defun show-new-message (session simulation)
   "Show a new message of SIMULATION in SESSION, now or at the end of the tick."
   (cond ((not (simulation-inside-tick-p simulation)) (show-messages session))
         ;; Its tick ends when a user says how to continue, who may need these messages.
@@ -123,10 +124,10 @@ SESSION has a newer observer. So no thread waits for the end of a tick, which ma
                          (show-if-pending session)
                          (remove-observer observer simulation))))))
 
-(defun set-listener (session simulation)
+(defun set-queue-listener (session simulation)
   "Notify SESSION when SIMULATION has messages; if SESSION is NIL, notify no session."
   (setf (message-queue-listener (simulation-messages simulation))
-        (and session (lambda () (handle-message session simulation)))))
+        (and session (lambda () (show-new-message session simulation)))))
 
 (defun listen-to (session simulation)
   ;; A new window does not know what others have shown often.
@@ -135,7 +136,7 @@ SESSION has a newer observer. So no thread waits for the end of a tick, which ma
       (with-lock ((session-lock other)) (merge-counts counts (session-error-counts other)))
       (with-lock ((session-lock session)) (merge-counts (session-error-counts session) counts))))
   (setf (session-simulation session) simulation)
-  (set-listener session simulation)
+  (set-queue-listener session simulation)
   (keep-history simulation)
   (when (live-p simulation)
     (let ((observer (observer-for session)))
@@ -148,7 +149,7 @@ SESSION has a newer observer. So no thread waits for the end of a tick, which ma
     (when simulation
       (let ((next (or (first (sessions-showing simulation))
                       (session-with-queue (simulation-messages simulation)))))
-        (set-listener next (if next (session-simulation next) simulation))))))
+        (set-queue-listener next (if next (session-simulation next) simulation))))))
 
 (defun follow-simulation (session)
   (unless (or (session-abandoned-p session)
@@ -160,14 +161,14 @@ SESSION has a newer observer. So no thread waits for the end of a tick, which ma
 
 ;;; A window follows its user into other runs.
 
-(define-event *whereabouts-hooks*
+(define-event *before-line-hooks*
   "Functions, or names of functions, that the thread of a session calls before it reads a line. The
 arguments are the session, its run when it last read a line, and its present run, perhaps the same.
 A run may be NIL. A headless run stands still during the calls.")
 
-(defun call-whereabouts-hooks (session)
+(defun call-before-line-hooks (session)
   (let ((old (shiftf (session-whereabouts session) *simulation*)))
-    (call-listeners *whereabouts-hooks* session old *simulation*)))
+    (call-listeners *before-line-hooks* session old *simulation*)))
 
 ;;;; In which run each session is
 
@@ -254,7 +255,7 @@ show messages of SIMULATION. Do nothing if SESSION shows them already. Callable 
 
 ;;; Going there.
 
-(defun go-to-run (simulation)
+(defun make-run-current (simulation)
   "Make SIMULATION the current simulation in this thread."
   (setf *simulation* simulation
         *world* (simulation-world simulation)))
@@ -265,6 +266,6 @@ show messages of SIMULATION. Do nothing if SESSION shows them already. Callable 
     (multiple-value-bind (simulation name) (run-to-continue-in *simulation* *prompt-robot*)
       (when simulation
         (announce-run session simulation name)
-        (go-to-run simulation)
+        (make-run-current simulation)
         (setf *prompt-robot* name)
         (import-robot-names (current-robot-names))))))

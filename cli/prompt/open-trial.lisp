@@ -129,7 +129,7 @@
 (defun run-line-in-trial (session trial)
   (call-outside-trial
    (lambda ()
-     (call-whereabouts-hooks session)
+     (call-before-line-hooks session)
      (begin-trial session trial)
      (let ((before (trial-state)))
        (call-guarded session (lambda ()
@@ -166,7 +166,7 @@
         (unless (call-outside-trial (lambda () (await-typed-line session left)))
           (setf (open-trial-due trial) (time-of-next-tick trial))
           t)
-        (progn (when (plusp left) (await-time (open-trial-due trial) *simulation*))
+        (progn (when (plusp left) (await-real-time (open-trial-due trial) *simulation*))
                (setf (open-trial-due trial) (time-of-next-tick trial))
                t))))
 

@@ -34,7 +34,7 @@ waits for in vain, and what could be done."
   (let ((task (plan-job-task job)))
     (and task (task-over-p task))))
 
-(defun plan-runner-now ()
+(defun current-plan-runner ()
   (handler-case (rpl-runner) (misuse () nil)))
 
 ;;; A plan may end before BEGIN-PLAN has returned its task.
@@ -142,7 +142,7 @@ waits for in vain, and what could be done."
 
 ;;; Deadlocks.
 
-(defun stuck-texts (runner task)
+(defun stuck-plan-texts (runner task)
   "If no plan of RUNNER can ever continue, return a list of two texts: what TASK waits for, and what
 could be done. Otherwise return NIL. Call this function while no plan reacts."
   (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
@@ -156,7 +156,7 @@ could be done. Otherwise return NIL. Call this function while no plan reacts."
               (and (string/= "" advice) (cut advice 1000)))))))
 
 (defun note-if-stuck (job runner)
-  (setf (plan-job-stuck job) (stuck-texts runner (plan-job-task job))))
+  (setf (plan-job-stuck job) (stuck-plan-texts runner (plan-job-task job))))
 
 ;;; Live.
 
@@ -176,7 +176,7 @@ the next check to RUNNER. Return the result of the last check."
   (loop with stuck = nil
         until (or (plan-over-p job) (plan-job-forgotten-p job))
         do (cond ((wait-on-semaphore (plan-job-over job) 0.2))
-                 ((and (live-p (plan-job-simulation job)) (eq runner (plan-runner-now)))
+                 ((and (live-p (plan-job-simulation job)) (eq runner (current-plan-runner)))
                   (setf stuck (report-if-stuck job runner)))
                  (t (return)))
         finally (unless (or (plan-job-forgotten-p job)
@@ -185,7 +185,7 @@ the next check to RUNNER. Return the result of the last check."
   (close-job job))
 
 (defun start-watching-plan (job)
-  (let ((runner (plan-runner-now)))
+  (let ((runner (current-plan-runner)))
     ;; The thread would see the run of the terminal's prompt; this may be that of a window.
     (start-thread (lambda ()
                     (let* ((*simulation* (plan-job-simulation job))
@@ -196,7 +196,7 @@ the next check to RUNNER. Return the result of the last check."
 ;;; Headless.
 
 (defun await-plan-headless (job)
-  (let ((runner (plan-runner-now)))
+  (let ((runner (current-plan-runner)))
     (await-test (lambda () (or (plan-over-p job) (note-if-stuck job runner))))
     (let ((finished-p (cond ((plan-over-p job) (report-plan-end job) t)
                             ((plan-job-stuck job)

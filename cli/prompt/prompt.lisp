@@ -18,30 +18,30 @@ of SESSION, and INBOX the waiting requests of the simulation."
 (defun run-with-time-notice (session text)
   "Run TEXT, a line of SESSION. Tell an interactive user if TEXT waits because time stands still."
   (let ((jobs (session-jobs session)) (inbox (waiting-requests))
-        (break-request (first (session-breaks session))))
+        (break-request (first (session-other-breaks session))))
     (if break-request
         (run-debug-line session break-request text)
-        (run-text session text))
+        (run-typed-line session text))
     (when (and (session-terminal-p session) (waits-for-time-p session jobs inbox))
       (write-fitted (session-console session)
                     "Time stands still. RESUME continues, STEP 10 passes 10 ticks.~%"))))
 
-(defun record-line-begun (session text)
-  (note-line-begun (session-account session) (if (comment-p text) nil text)
+(defun record-line-start (session text)
+  (note-line-start (session-account session) (if (nothing-to-run-p text) nil text)
                    (count-of-lines-read (session-input session)) (session-errors session)))
 
 (defun begin-line-without-comments (session text trouble)
   "Begin the line TEXT of SESSION, and return TEXT without comments between #| and |#. If the line
 is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-TOO-LONG."
-  (record-line-begun session (if trouble (line-beginning trouble) text))
+  (record-line-start session (if trouble (line-beginning trouble) text))
   (multiple-value-bind (rest trouble) (without-block-comments session text trouble)
-    (check-outline session rest trouble)
-    (unless (eq rest text) (record-line-begun session rest))
+    (reject-overlong-line session rest trouble)
+    (unless (eq rest text) (record-line-start session rest))
     rest))
 
 (defun read-next-line (session)
   "Return SESSION's next line; NIL at the end; for an overlong line, an outline and LINE-TOO-LONG."
-  (handler-case (read-input session (if (session-breaks session) "Break> " "Robot> "))
+  (handler-case (read-input session (if (session-other-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
 
 (defun select-run-and-robot (session)
@@ -54,13 +54,13 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
 
 (defun run-next-line (session)
   "Read a line of SESSION and run it; at the end of input, end the session."
-  (call-whereabouts-hooks session)
+  (call-before-line-hooks session)
   (select-run-and-robot session)
   (when (session-account session) (report-last-line session))
   (multiple-value-bind (text trouble) (unless (stopped-by-error-p session) (read-next-line session))
     (cond (text
            ;; While it was typed, its run may have ended and another begun.
-           (unless (session-breaks session) (select-run-and-robot session))
+           (unless (session-other-breaks session) (select-run-and-robot session))
            (run-with-time-notice session (begin-line-without-comments session text trouble)))
           (t (setf (session-over-p session) t
                    (reader-ended-p (session-reader session))
@@ -82,8 +82,8 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
 time stands still, report that the line waits."
   (await-session-commands session)
   (show-messages session)
-  (note-line-ended (session-account session) (session-errors session)
-                   (pending-outcome-function session)))
+  (note-line-end (session-account session) (session-errors session)
+                 (pending-outcome-function session)))
 
 (defun run-lines (session)
   "Run the files and lines of SESSION until it is over, or continues with another robot."
@@ -111,9 +111,9 @@ time stands still, report that the line waits."
          (*standard-input* (session-input session))
          (*before-program-reads* (lambda () (report-program-input (session-account session))))
          (*completer* (lambda (text point) (completions-in session text point)))
-         (*waits-while-paused-p* (session-terminal-p session))
+         (*user-can-resume-p* (session-terminal-p session))
          (*default-robot-function* #'session-robot)
-         (*robot-to-drive* #'robot-of-prompt)
+         (*commanded-robot-hook* #'robot-of-prompt)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
     (funcall function)))
 
@@ -192,7 +192,7 @@ QUIT. Other sessions then get the questions of SESSION and the messages of its r
 
 (defun answerable-by-others-p (session)
   "True if users of other sessions can answer a break of SESSION, whose user is lost."
-  (and (break-state-own (session-break-state session)) (substitute-sessions session) t))
+  (and (break-state-own (session-break-state session)) (replacement-sessions session) t))
 
 (defun end-session (session)
   "End SESSION from another thread. Interrupt its line; run no line typed ahead or being typed."

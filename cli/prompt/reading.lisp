@@ -97,7 +97,7 @@ Show PROMPT, except in a batch. First await earlier commands if SESSION waits fo
              (skip-to-comment-end stream))))
     char))
 
-(defun read-line-or-outline (session text)
+(defun read-continuation-line (session text)
   "Return the next line of SESSION, which continues TEXT; NIL at the end. For a line that is too
 long, return an outline and the condition LINE-TOO-LONG."
   (handler-case (read-input session +continuation-prompt+ text)
@@ -114,7 +114,7 @@ long, return an outline and the condition LINE-TOO-LONG."
 (defun skip-rest-of-forms (session text start)
   "TEXT was read so far. Read lines in SESSION until all forms in TEXT from START on are complete."
   (flet ((next-outline (text)
-           (or (values (read-line-or-outline session text))
+           (or (values (read-continuation-line session text))
                (error 'end-of-file :stream (session-input session)))))
     (handler-case (skip-forms (make-growing-text-stream text start #'next-outline))
       (end-of-file ()))))
@@ -206,7 +206,7 @@ is the condition LINE-TOO-LONG; otherwise NIL. Signals BAD-LINE if the comment d
         (when end (return (values (subseq line end) trouble)))
         (setf depth deeper
               position 0
-              (values line trouble) (read-line-or-outline session text))
+              (values line trouble) (read-continuation-line session text))
         (unless line
           (reject-line "The comment that begins with #| does not end; close it with |#."))))))
 
@@ -225,19 +225,19 @@ outside of quotes and other comments; NIL if there is no such comment."
   "Return TEXT, a typed line of SESSION, without comments between #| and |#, unless TEXT begins with
 a form. If the returned text is an outline of a line that is too long, the second value is the
 condition LINE-TOO-LONG. TROUBLE is that condition for TEXT itself, or NIL."
-  (let ((start (unless (or (comment-p text) (lisp-p text)) (block-comment-start text))))
+  (let ((start (unless (or (nothing-to-run-p text) (lisp-p text)) (block-comment-start text))))
     (if start
         (let ((before (subseq text 0 start)))
           (multiple-value-bind (rest later) (text-after-block-comment session text start trouble)
             (without-block-comments session (format nil "~A ~A" before rest)
-                                    (or (unless (comment-p rest) later)
-                                        (unless (comment-p before) trouble)))))
+                                    (or (unless (nothing-to-run-p rest) later)
+                                        (unless (nothing-to-run-p before) trouble)))))
         (values text trouble))))
 
-(defun check-outline (session text trouble)
+(defun reject-overlong-line (session text trouble)
   "Signal TROUBLE, unless TROUBLE is NIL or TEXT is a comment. TEXT is the outline of a line of
 SESSION; first skip a form that begins in TEXT."
-  (when (and trouble (not (comment-p text)))
+  (when (and trouble (not (nothing-to-run-p text)))
     (when (lisp-p text) (skip-rest-of-forms session text 0))
     (error trouble)))
 
@@ -245,7 +245,7 @@ SESSION; first skip a form that begins in TEXT."
   "Return the text after the comment that begins at START in TEXT, a text of forms. Read lines in
 SESSION until the comment ends. Signals LINE-TOO-LONG if a line is too long even without comments."
   (multiple-value-bind (rest trouble) (text-after-block-comment session text start nil)
-    (cond (trouble (multiple-value-call #'check-outline
+    (cond (trouble (multiple-value-call #'reject-overlong-line
                      session (without-block-comments session rest trouble))
                    "")
           (t rest))))

@@ -66,7 +66,7 @@ running form, or NIL if the number is not known."
 
 ;;; Lines.
 
-(defun note-line-begun (account text line errors)
+(defun note-line-start (account text line errors)
   "Record that the line with the number LINE begins, after ERRORS errors. TEXT is the text of the
 line, or NIL if the line does nothing."
   (when account
@@ -94,7 +94,7 @@ line, or NIL if the line does nothing."
   (dolist (waiting (reverse (shiftf (account-waiting account) '())))
     (report-line account "done" (first waiting) (second waiting) :ok :false)))
 
-(defun note-line-ended (account errors end)
+(defun note-line-end (account errors end)
   "Record and report that all requests of the running line are done, after ERRORS errors so far. If
 requests still wait for time to pass, END is a function: it returns NIL until the requests are done,
 and then :OK or :FAILED. Otherwise END is NIL."
@@ -124,7 +124,7 @@ and then :OK or :FAILED. Otherwise END is NIL."
   :documentation "The text in messages that names a line of the prompt as the asker of a request.")
 
 ;; Equal to that, but another object: an error of the line's requests is the line's.
-(defparameter *line-asker* (copy-seq +prompt-asker+)
+(defparameter *line-requester* (copy-seq +prompt-asker+)
   "The asker of requests made by lines that are not Lisp, in sessions that do not count lines.")
 
 (defvar *lines-of-askers* (make-hash-table :test 'eq :weakness :key :synchronized t)
@@ -137,12 +137,12 @@ be NIL. TYPED-P is true for a line that is not Lisp."
          (let ((asker (copy-seq text)))
            (setf (gethash asker *lines-of-askers*) (list account (account-line account) typed-p))
            asker))
-        (typed-p *line-asker*)
+        (typed-p *line-requester*)
         (t text)))
 
 (defun line-asker-p (asker)
   "True if ASKER is the asker of requests made by lines that are not Lisp."
-  (or (eq *line-asker* asker) (third (gethash asker *lines-of-askers*))))
+  (or (eq *line-requester* asker) (third (gethash asker *lines-of-askers*))))
 
 (defun about-line-request-p (message)
   "True if MESSAGE is about a request of a counted line itself, not of a plan."

@@ -19,7 +19,7 @@ continue. CALL is the function that THREAD is to call next."
   (posted (make-semaphore "call posted") :read-only t)
   (done (make-semaphore "call done") :read-only t))
 
-(defun restarts-of-line (condition)
+(defun restarts-within-line (condition)
   "Return the restarts for CONDITION, from the innermost to the restart that ends the line. Of
 restarts with the same name, include only the innermost."
   (let* ((all (remove nil (compute-restarts condition) :key #'restart-name))
@@ -44,10 +44,10 @@ restarts with the same name, include only the innermost."
 
 (defun restarts-to-offer (condition)
   "Return the restarts for CONDITION that a user can choose, the most likely first."
-  (stable-sort (restarts-of-line condition)
+  (stable-sort (restarts-within-line condition)
                #'< :key (lambda (restart) (restart-rank restart condition))))
 
-(defun broken-here-p (break-request)
+(defun own-thread-break-p (break-request)
   (eq (break-request-thread break-request) (current-thread)))
 
 (defun break-condition-text (condition)
@@ -103,7 +103,7 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
   ;; A function to call before each line is read, outside of trials and forks, or NIL: it makes sure
   ;; that the right robot is commanded, as a window does for its own.
   (place nil :type (or null function) :read-only t)
-  ;; The run that it was in when it last read a line; see CALL-WHEREABOUTS-HOOKS.
+  ;; The run that it was in when it last read a line; see CALL-BEFORE-LINE-HOOKS.
   (whereabouts nil)
   ;; The trial that it is in, or NIL, and how many nested forks it is in.
   (trial nil)
@@ -156,13 +156,14 @@ ARS-USER. COLOR is :ALWAYS, :NEVER, or :AUTO (on a terminal, unless the environm
 (defun session-thread (session)
   (break-state-thread (session-break-state session)))
 
-(defun session-breaks (session)
+(defun session-other-breaks (session)
   "Return the breaks in other threads that wait for SESSION, the oldest first."
   (break-state-others (session-break-state session)))
 
 (defun breaks-for-session (session)
   "Return the breaks that wait for SESSION. The user is asked about the first break."
-  (let ((own (break-state-own (session-break-state session))) (others (session-breaks session)))
+  (let ((own (break-state-own (session-break-state session)))
+        (others (session-other-breaks session)))
     (cond ((null own) others)
           ((break-request-told-p own) (cons own others))
           (t (append others (list own))))))

@@ -102,13 +102,13 @@ otherwise. Signals BAD-LINE if the file is not Lisp."
         when (eq (find-map map) (find-map (blueprint-map body) nil))
           collect (blueprint-name body)))
 
-(defun all-worlds ()
+(defun maps-with-robots ()
   (remove-if-not #'robot-names-in-map (all-maps)))
 
 (defun robot-names-in-world (name)
   "Return the names of the robots in the world NAME: a map, or else a Lisp file that defines a
 world. Signals BAD-LINE if there is no such world."
-  (let ((map (find name (all-worlds) :key #'map-name :test #'same-name-p))
+  (let ((map (find name (maps-with-robots) :key #'map-name :test #'same-name-p))
         (file (existing-lisp-file name)))
     (cond (map (robot-names-in-map map))
           (file (load-world file))
@@ -117,12 +117,12 @@ world. Signals BAD-LINE if there is no such world."
                          (~:*~(~A~) (X Y) ANGLE))."
                         name))
           (t (reject-line "There is no world ~A, nor a file of that name. Known: ~{~(~A~)~^, ~}."
-                          name (mapcar #'map-name (all-worlds)))))))
+                          name (mapcar #'map-name (maps-with-robots)))))))
 
 (defun robot-names-in-same-world (robot-name)
   (cons robot-name (remove robot-name (robot-names-in-map (map-of-robot robot-name)))))
 
 (defun write-worlds ()
-  (dolist (map (all-worlds))
+  (dolist (map (maps-with-robots))
     (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (map-name map) (map-width map) (map-height map)
             (robot-names-in-map map))))

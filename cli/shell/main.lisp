@@ -100,8 +100,8 @@ continue with, return its name, else NIL."
   ;; Without a terminal, the user has only the window.
   (when (and (option-value :window options)
              (reader-ended-p (session-reader session))
-             *displays-waiter*)
-    (funcall *displays-waiter*)))
+             *window-close-waiter*)
+    (funcall *window-close-waiter*)))
 
 (defun lines-for-plan-options (options)
   (loop for text in (option-values :plan options) collect (format nil "plan ~A" text)))
@@ -226,7 +226,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
   (let ((*package* (user-package)))
     (short-error-text (ending-condition-text condition))))
 
-(defun report-ending (condition status)
+(defun report-process-end (condition status)
   (ignore-errors (say-on-error-output (ending-message condition)))
   status)
 
@@ -236,14 +236,14 @@ print a message and return the status for that case."
   (catch 'leave
     (handler-case
         (call-until-interrupted
-         (lambda () (let ((*leave-without-output-p* t)) (call-with-held-interrupts function)))
+         (lambda () (let ((*leave-without-output-p* t)) (call-releasing-interrupts function)))
          (lambda ()
            (say-on-error-output "stopped.")
            130))
-      (usage-error (condition) (report-ending condition 2))
+      (usage-error (condition) (report-process-end condition 2))
       ((or error storage-condition) (condition)
         (recover-memory condition)
-        (report-ending condition 1)))))
+        (report-process-end condition 1)))))
 
 (defun finish-console (console status)
   "Write the pending output of CONSOLE. Return STATUS, or a status of at least 1 if writing failed."
@@ -252,7 +252,7 @@ print a message and return the status for that case."
     (cond ((null trouble) status)
           ;; An output that is closed early is no error.
           ((search "Broken pipe" (printable-report trouble)) (max 1 status))
-          (t (report-ending trouble (max 1 status))))))
+          (t (report-process-end trouble (max 1 status))))))
 
 (defun call-fitting-tables (function console)
   "Call FUNCTION. If CONSOLE is on a terminal, tables that FUNCTION prints fit the window."

@@ -148,7 +148,7 @@ only a terminal has colours, and only if the environment variable NO_COLOR is no
 
 ;;; Long lines are broken between words.
 
-(defun breaking-point (line columns)
+(defun line-break-position (line columns)
   "Return the position of the blank at which to break LINE. The part before that blank has at most
 COLUMNS, if possible. Return NIL if LINE fits into COLUMNS or has no blank."
   (loop with start = (position #\Space line :test #'char/=)
@@ -174,7 +174,7 @@ gap after a label, as in \"Time:    Tick 0\", does not count."
 (defun break-line-at-blanks (line first columns)
   "Break LINE at blanks into lines of at most COLUMNS, the first of at most FIRST. Return the list
 of these lines. All lines are indented like LINE."
-  (let ((place (breaking-point line first))
+  (let ((place (line-break-position line first))
         (indent (or (position #\Space line :test #'char/=) 0)))
     (if (and place (not (table-line-p line indent)))
         (cons (string-right-trim " " (subseq line 0 place))

@@ -9,7 +9,7 @@
 (defconstant +longest-line-typed+ 1000000 "The largest number of bytes in a line.")
 
 ;; What follows so many bytes of one line may be misread.
-(defconstant +longest-outline+ 50000000
+(defconstant +longest-line-searched+ 50000000
   "How many bytes of a line are searched for parentheses, quotes and comments.")
 
 (define-condition line-too-long (bad-line)
@@ -67,7 +67,7 @@ long. The end of a line that is too long is only an outline."
                            for char = (read-char octets nil)
                            while char
                            do (when (or (<= count +longest-line-typed+)
-                                        (and (<= count +longest-outline+)
+                                        (and (<= count +longest-line-searched+)
                                              (outline-char-p char last)))
                                 (write-char char out))
                               (incf count)

@@ -55,7 +55,7 @@
 (defvar *ending-error-output* nil
   "The stream for this thread's error output. It discards output once the process is ending.")
 
-(defun begin-ending (condition)
+(defun mark-process-ending (condition)
   "Record that CONDITION, an interrupt, ends this process. Until the final message, discard error
 output, such as the compiler's report that it was aborted."
   (declare (ignore condition))
@@ -67,7 +67,7 @@ output, such as the compiler's report that it was aborted."
 call THEN, which is not interrupted, and return the values of THEN."
   (let ((*ending-error-output* *error-output*))
     (handler-case
-        (handler-bind ((user-interrupt #'begin-ending))
+        (handler-bind ((user-interrupt #'mark-process-ending))
           (let ((*error-output* (make-synonym-stream '*ending-error-output*)))
             (funcall function)))
       (user-interrupt () (funcall then)))))
@@ -164,7 +164,7 @@ keys are signals instead; pending output is kept. ENTER-KEY-MODE works only in C
   (enter-key-mode :interrupts *keys-interrupt-p*)
   (setf *continued-p* t))
 
-(defun quit-by-signal ()
+(defun exit-by-sigquit ()
   "End this process by the signal SIGQUIT, as Control-\\ does in other programs."
   (restore-terminal-mode)
   (sb-posix:kill (process-id) sb-posix:sigquit))

@@ -33,7 +33,7 @@ draws by WRITE-IMMEDIATELY and OVERWRITE-SCREEN-CODE. Other output is held back 
   (call-holding-interrupts
    (lambda ()
      (begin-screen console)
-     (unwind-protect (call-with-held-interrupts function)
+     (unwind-protect (call-releasing-interrupts function)
        (end-screen console)))))
 
 ;;; A line that shows progress.

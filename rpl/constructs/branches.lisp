@@ -74,7 +74,7 @@ evaporates the others. If all branches fail, TRY-ALL fails with a COMPOSITE-FAIL
 
 ;;;; One after the other
 
-(defstruct (attempt-record (:constructor make-attempt-record (order)) (:copier nil))
+(defstruct (attempt-progress (:constructor make-attempt-progress (order)) (:copier nil))
   "ORDER is a list of the attempts left, each a cons (node . environment). FAILURES is a list of the
 failures so far, the newest first."
   (order '() :type list)
@@ -99,20 +99,20 @@ If all attempts fail, fail with a COMPOSITE-FAILURE."
           (order function '(function in-written-order)))
   (:steps
    (begin
-    (setf memory (make-attempt-record
+    (setf memory (make-attempt-progress
                   (funcall order attempts environment (runner-dice (task-runner task)))))
     (at-once between-attempts))
    (trying (values (frame-up frame) value))
    (between-attempts
-    (destructuring-bind (&optional attempt . inner) (pop (attempt-record-order memory))
+    (destructuring-bind (&optional attempt . inner) (pop (attempt-progress-order memory))
       (cond (attempt
              (next trying)
              (enter (the node attempt) inner frame))
             (t (unwind task (frame-up frame)
-                       (composite-failure-from (attempt-record-failures memory) task frame)))))))
+                       (composite-failure-from (attempt-progress-failures memory) task frame)))))))
   (:unwind
    (when (and (in-state-p trying) (typep signal 'plan-failure))
-     (push signal (attempt-record-failures memory))
+     (push signal (attempt-progress-failures memory))
      (next between-attempts)
      (values t frame nil))))
 

@@ -9,7 +9,7 @@
    (let ((failure (make-failure (funcall arguments environment))))
      (unwind task frame (failure-of failure task frame)))))
 
-(defun check-fail (form)
+(defun check-fail-keyword (form)
   (when (and (cddr form) (keywordp (second form)) (misspelling-p (second form) :class))
     (style-warn-of-form form "fail takes ~(~S~) as the class of the failure. Did you mean :class?"
                         (second form))))
@@ -22,7 +22,7 @@
                                 :class :~:*~(~A~))." class))))
 
 (define-plan-form "FAIL" :may (&rest arguments) (form scope)
-  (check-fail form)
+  (check-fail-keyword form)
   (check-failure-class form scope)
   (if (some (lambda (argument) (suspends-p argument scope)) arguments)
       (code-with-hoisted-parts form scope)
@@ -47,7 +47,7 @@
            (every #'failure-specifier-p (rest type)))
       (and type (symbolp type))))
 
-(defun check-clause (clause form scope)
+(defun check-handler-clause (clause form scope)
   (unless (and (typep clause '(cons t (cons list t))) (proper-list-p clause)
                (typep (second clause) '(or null (cons t null))))
     (reject-clause (text-title) (if (consp clause) clause form)
@@ -105,7 +105,7 @@ WITH-FAILURE-HANDLING with VALUE, and (retry) reruns BODY; else the failure prop
        (reject-clause (text-title) clauses (format nil "a list of clauses: write (~(~S~))"
                                                    (abridged clauses))))
      (dolist (clause clauses)
-       (check-clause clause form scope)
+       (check-handler-clause clause form scope)
        (dolist (code (ensure-list (first clause))) (warn-of-error-code-as-class code body form)))
      (block-code nil form scope
                  (lambda (scope)

@@ -211,7 +211,7 @@ lists of forms, POLICY is a form."
         do (setf text (named-policy-form policy arguments (list text)))
         finally (return text)))
 
-(defun check-policy-arguments (arguments form scope)
+(defun check-argument-list-given (arguments form scope)
   (when (and (consp arguments)
              (name-without-quote-p (first arguments) scope)
              (fboundp (first arguments)))
@@ -226,7 +226,7 @@ whose values the policy receives. See DEFINE-POLICY. Return the first value of B
 policy of the manual's WITH-POLICY is plan text.)"
   (:code
    (progn
-     (check-policy-arguments arguments form scope)
+     (check-argument-list-given arguments form scope)
      (plan-code (note-expansion (nested-policies-form `((,policy ,arguments)) body form) form)
                 scope))))
 

@@ -106,7 +106,7 @@ ticks have passed (manual C). TIMEOUT is a number up to 1e15."
            (value (fluent-value fluent))
            (timeout (if value nil (checked-timeout (funcall timeout environment)))))
       (cond (value
-             (unless (fluent-p fluent) (warn-of-awaited-value task value))
+             (unless (fluent-p fluent) (warn-of-dubious-condition task value))
              (values (frame-up frame) value))
             ((and timeout (<= (the real timeout) 0)) (values (frame-up frame) nil))
             (t (next waiting)

@@ -61,11 +61,11 @@ INTERFACE is in use. FUNCTION is SET-VALUE or PULSE.")
 (defvar *homes* '()
   "The homes that this thread owns.")
 
-(defun take-home (home)
+(defun acquire-home (home)
   "Make this thread the owner of HOME. Return true unless another thread owns HOME."
   (swap-if-eq (home-holder home) nil (current-thread)))
 
-(defun leave-home (home)
+(defun release-home (home)
   (swap-if-eq (home-holder home) (current-thread) nil))
 
 (defun call-owning-home (home take function)
@@ -80,14 +80,14 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
         (setf (home-left-p home) t)
         (multiple-value-prog1 (funcall function)
           (setf (home-left-p home) nil))))
-    (leave-home home)))
+    (release-home home)))
 
 (defun home-busy-p (home)
   "True if a thread owns HOME, or has left HOME in the middle of a change."
   (or (home-left-p home) (home-holder home)))
 
 (defun wait-for-home (home)
-  (loop until (take-home home) do (yield-thread))
+  (loop until (acquire-home home) do (yield-thread))
   t)
 
 (defun call-with-owned-home (home function)

@@ -162,7 +162,7 @@ variable that holds a fluent."
   (1+ (loop for source in sources
             when (fluent-p source) maximize (fluent-height source))))
 
-(defun lift (name function &rest arguments)
+(defun apply-lifted (name function &rest arguments)
   "Return the value of FUNCTION for ARGUMENTS. If some of ARGUMENTS are fluents, return a new
 fluent, named NAME, instead. Its value is always FUNCTION of the current values of ARGUMENTS."
   (if (some #'fluent-p arguments)
@@ -184,7 +184,7 @@ fluent, named NAME, instead. Its value is always FUNCTION of the current values 
   "Return a fluent whose value is always FUNCTION of the current values of ARGUMENTS, some of which
 are fluents. FUNCTION must depend on nothing else and must not set fluents. If no argument is a
 fluent, call FUNCTION at once."
-  (apply #'lift (function-label function) (coerce function 'function) arguments))
+  (apply #'apply-lifted (function-label function) (coerce function 'function) arguments))
 
 (addition fl-apply)
 (defun fl-apply (function &rest arguments)
@@ -272,7 +272,7 @@ because the values of fluents may refer to each other.")
       (mapc (lambda (watcher) (visit (watcher-fluent watcher))) watchers))
     (nreverse fluents)))
 
-(defun listed-watchers (fluent)
+(defun distinct-watchers (fluent)
   "Return a list of the watchers that are registered with FLUENT, without repetition."
   (let ((seen '()))
     (loop for watcher = (fluent-first-watcher fluent) then (watcher-next watcher)
@@ -305,7 +305,7 @@ because the values of fluents may refer to each other.")
 (defun repair-fluents (home watchers unwanted-p)
   "Register WATCHERS again in HOME, and other watchers of their fluents except UNWANTED-P ones."
   (let* ((fluents (reachable-fluents watchers))
-         (listed (remove-if unwanted-p (mapcan #'listed-watchers fluents)))
+         (listed (remove-if unwanted-p (mapcan #'distinct-watchers fluents)))
          (all (append listed (set-difference watchers listed))))
     (setf (home-backlog home) (make-backlog))
     (mapc #'reset-fluent-links fluents)

@@ -34,7 +34,7 @@
             (setf (view-memory view) (cons now value))
             now))))))
 
-(defun read-view (view value)
+(defun consume-event (view value)
   "Return the value of VIEW, and reset VIEW. VALUE is the value of the first fluent of VIEW."
   (let ((answer (if (view-test view) (change-since-reading view value) (event-since-reading view))))
     ;; It is no longer true when the change under way, if any, is spread.
@@ -44,7 +44,7 @@
 (defun make-view (name sources bases memory &key always-p test key)
   (let ((view nil))
     (dolist (base bases) (setf (fluent-reading base) :always))
-    (setf view (%make-view name (lambda (&rest values) (read-view view (first values)))
+    (setf view (%make-view name (lambda (&rest values) (consume-event view (first values)))
                            sources (height-over sources) bases memory always-p test key))))
 
 ;; The twin starts with the memory of VIEW, and reads the fork's fluents.
@@ -112,7 +112,7 @@ or wakes a task. A pulse does not count as a change. Signals WRONG-ARGUMENT. (Fr
                        collect (if (constantp argument environment) argument (pop variables)))))
     `(let ,bindings
        (if (or ,@(loop for (variable) in bindings collect `(fluent-p ,variable)))
-           (lift ',operator #',operator ,@values)
+           (apply-lifted ',operator #',operator ,@values)
            (,operator ,@values)))))
 
 (defun every-value (&rest values)
@@ -128,7 +128,7 @@ further thunks when the result is certain. From the first fluent on, the result 
   (loop for (thunk . more) on thunks
         for value = (checked-condition (funcall (the function thunk)))
         when (fluent-p value)
-          return (apply #'lift name function value
+          return (apply #'apply-lifted name function value
                         (mapcar (lambda (thunk) (checked-condition (funcall (the function thunk))))
                                more))
         when (or (null more) (eq absorbing (and value t)))
@@ -144,7 +144,7 @@ further thunks when the result is certain. From the first fluent on, the result 
              collect `(defun ,name (&rest arguments)
                         ,(format nil "Return ~A of ARGUMENTS; a network if one is a fluent."
                                  operator)
-                        (apply #'lift ',operator #',operator arguments))
+                        (apply #'apply-lifted ',operator #',operator arguments))
              collect `(define-compiler-macro ,name (&rest arguments)
                         (list* 'call-lifted ',operator arguments)))))
 

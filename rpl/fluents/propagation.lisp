@@ -20,8 +20,8 @@ are true for the instant of the change; otherwise NIL. Meanwhile networks must n
   (if *runner* (home-backlog *runner*) (make-backlog)))
 
 ;; Costs 1 ns without a trace.
-(declaim (inline note-change))
-(defun note-change (kind fluent value)
+(declaim (inline trace-change))
+(defun trace-change (kind fluent value)
   "If there is a current plan runner, record in its trace that FLUENT has the new value VALUE."
   (let* ((home *runner*)
          (function (and home (home-on-change home))))
@@ -189,14 +189,14 @@ must be renewed; NIL if they need not be. A pulse of a source does not pulse a v
     (before-change fluent)
     (setf (fluent-now fluent) value)
     (incf (fluent-sets fluent))
-    (note-change :set fluent value)
+    (trace-change :set fluent value)
     (propagate fluent :change)))
 
 (defun set-in-home (home fluent value)
   "Set FLUENT of HOME to VALUE: now if no thread owns or serves HOME, otherwise by a post."
   (if (and (not (posted-p home))
            (not (funcall (home-attended-p home)))
-           (call-owning-home home #'take-home (lambda () (set-now fluent value) t)))
+           (call-owning-home home #'acquire-home (lambda () (set-now fluent value) t)))
       (funcall (home-on-post home))
       (post-entry home `((:set ,fluent ,value)))))
 
@@ -229,7 +229,7 @@ effect when the running plans pause (manual D.2)."
     (loop for fluent in fluents
           for value in values
           do (setf (fluent-now fluent) value)
-             (note-change :pulse fluent value))
+             (trace-change :pulse fluent value))
     (propagate-all fluents :pulse)
     (loop for fluent in fluents
           for value in before
@@ -270,7 +270,7 @@ together. So a task that a pulse wakes sees the values set at the same instant (
                (:set (unless (eql (first more) (fluent-now fluent))
                        (setf (fluent-now fluent) (first more))
                        (incf (fluent-sets fluent))
-                       (note-change :set fluent (first more))
+                       (trace-change :set fluent (first more))
                        (pushnew fluent changed)))
                (:pulse (incf (fluent-pulses fluent))
                 (push fluent pulsed)

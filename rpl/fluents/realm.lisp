@@ -122,7 +122,7 @@ or replaces it, return the twin; otherwise ENTITY."
 
 (defun source-realm (copier)
   "Return the realm of the run that COPIER copies."
-  (or (copied-run-value copier '*realm*) +root+))
+  (or (value-in-copied-run copier '*realm*) +root+))
 
 (defgeneric foreign-entity-p (entity copier)
   (:documentation "True if ENTITY does not belong to the run that COPIER copies.")

@@ -32,7 +32,7 @@ says how many parts have begun; its memory is the new environment."
       (some (lambda (variable) (special-variable-p variable (scope-environment scope)))
             variables)))
 
-(defun fill-lambda (values scopes sequential)
+(defun environment-lambda (values scopes sequential)
   "Return a lambda expression that makes an environment from VALUES, forms in SCOPES."
   (if sequential
       (let ((inner (scope-variable (first scopes))))
@@ -80,7 +80,7 @@ says how many parts have begun; its memory is the new environment."
                                   :sequential ,sequential
                                   :body ,body-code)
                    `(make-binding :form ',(form-as-written form)
-                                  :fill ,(fill-lambda values scopes sequential)
+                                  :fill ,(environment-lambda values scopes sequential)
                                   :body ,body-code)))))))
 
 (define-plan-form "LET" nil (bindings &rest body) (form scope)

@@ -16,7 +16,7 @@
            (next inside)
            (record-call-depth task frame)
            (enter (the node (procedure-body procedure))
-                  (funcall caller environment (entry-for procedure count))
+                  (funcall caller environment (entry-for-arity procedure count))
                   frame))
           (t (values (frame-up frame)
                      (multiple-value-call #'bundle-several-values
@@ -98,7 +98,7 @@ tasks. A deeper call fails with class :TOO-DEEP. The limit stops endless recursi
 (defun reject-unknown-call (name)
   (let ((remedy (unknown-call-remedy name)))
     (when remedy (reject-use "There is no plan procedure or function ~A" remedy))
-    (reject-name "plan procedure or function" name (procedures-to-offer)
+    (reject-name "plan procedure or function" name (procedure-names-to-offer)
                  (known-operators (or (symbol-package name) *package*)))))
 
 ;;;; Calls with a list of arguments

@@ -31,7 +31,7 @@
            (copy-source-location `(,operator ,@(loop for form in (rest form)
                                                      collect (condition-form form environment)))
                                  form)))
-    (check-condition form)
+    (reject-vector-condition form)
     (cond ((plan-operator-call-p form environment '("AND")) (conditions 'and))
           ((plan-operator-call-p form environment '("OR")) (conditions 'or))
           ((plan-operator-call-p form environment '("NOT" "NULL")) (conditions 'not))
@@ -44,7 +44,7 @@
   "Return a Lisp form that means what the call FORM means in a plan; this may be FORM itself."
   (let ((name (or (plan-operator-name form) "")))
     (when (member name '("AND" "OR" "NOT" "NULL") :test #'string=)
-      (mapc #'check-condition (rest form)))
+      (mapc #'reject-vector-condition (rest form)))
     (flet ((condition (form) (condition-form form environment))
            (is (&rest names) (member name names :test #'string=)))
       (cond ((is "IF") `(if ,(condition (second form)) ,@(cddr form)))
@@ -125,7 +125,7 @@
 
 (defun condition-lambda (form scope)
   "Return a lambda expression that takes an environment and returns the fluent or value of FORM."
-  (check-condition form)
+  (reject-vector-condition form)
   (leaf-lambda `(checked-condition ,(as-lisp form scope)) scope))
 
 (defun awaited-lambda (condition form scope)
@@ -224,7 +224,7 @@ bound to variables before FORM. So are all elements to their left, to keep the o
                 form)
                scope)))
 
-(defun function-form-code (form scope)
+(defun ordinary-call-code (form scope)
   "Return code for FORM, a call of an operator without a special meaning in plans."
   (cond ((some (lambda (argument) (suspends-p argument scope)) (rest form))
          (code-with-hoisted-parts form scope))
@@ -258,11 +258,11 @@ bound to variables before FORM. So are all elements to their left, to keep the o
           ((represented-construct form) (plan-code (represented-construct form) scope))
           (plan-form (funcall (plan-form-compiler plan-form) form scope))
           ((not (symbolp (first form))) (leaf-code-or-reject form scope))
-          ((assoc (first form) (scope-procedures scope)) (function-form-code form scope))
+          ((assoc (first form) (scope-procedures scope)) (ordinary-call-code form scope))
           ((local-function-p (first form) environment)
            (if (macro-function (first form) environment)
                (expansion-code form scope)
-               (function-form-code form scope)))
+               (ordinary-call-code form scope)))
           ((advice-for-form form) (leaf-code-or-reject form scope))
           ((macro-function (first form) environment) (expansion-code form scope))
           ((special-operator-p (first form)) (leaf-code-or-reject form scope))
@@ -270,7 +270,7 @@ bound to variables before FORM. So are all elements to their left, to keep the o
            (if (some (lambda (argument) (suspends-p argument scope)) (rest form))
                (code-with-hoisted-parts form scope)
                (leaf-code form scope)))
-          (t (function-form-code form scope)))))
+          (t (ordinary-call-code form scope)))))
 
 (defun expansion-code (form scope)
   (let ((expansion (macroexpand-1 form (scope-environment scope))))

@@ -204,7 +204,7 @@ first occurrence is expanded, because arguments come before bodies."
        (declare (ignorable #'build))
        ,(or code '(build)))))
 
-(defun define-plan-form-call (name node lambda-list clauses)
+(defun plan-form-definition-code (name node lambda-list clauses)
   (multiple-value-bind (waits given) (clause-rest :waits clauses)
     `(define-plan-form ,name ,(if given (first waits) :must) ,lambda-list (form scope)
        (with-hoisted-arguments ,(clause-rest :arguments clauses) form scope
@@ -250,5 +250,5 @@ construct): take missing clauses from that construct, whose lambda list must be 
                                     '(:parts :steps :step :unwind :child-ended :hot))
                          collect clause))))
        ,@(when (or node-p (clause-rest :code all))
-           `(,(define-plan-form-call name node lambda-list all)))
+           `(,(plan-form-definition-code name node lambda-list all)))
        ',name)))

@@ -78,7 +78,7 @@ COMPILE is true, the code is compiled."
 
 ;;; Macros.
 
-(defun pattern-parameters (pattern)
+(defun pattern-lambda-list (pattern)
   "Return PATTERN as a macro lambda list. In PATTERN, ?x stands for the variable x, and ?() for
 anything. The second value is a list of (variable word) for each word that must occur literally."
   (let ((literals '()))
@@ -102,7 +102,7 @@ anything. The second value is a list of (variable word) for each word that must 
              (gensym "ANY")
              (intern (subseq (symbol-name pattern) 1))))))
 
-(defun check-literal (name form given expected)
+(defun check-pattern-word (name form given expected)
   (unless (or (eq given expected)
               (and given expected (symbolp given) (symbolp expected) (same-name-p given expected)))
     (reject-clause (format nil "~(~A~)" name) form (format nil "the word ~(~S~)" expected))))
@@ -132,7 +132,7 @@ bound while TEMPLATE is evaluated. A pattern may end in a dot and ?x for all rem
 value of TEMPLATE is the plan text. A documentation string may come before TEMPLATE (manual D.8)."
   (check-plan-name (definition-title "def-interp-macro" name) name)
   (check-pattern name pattern)
-  (multiple-value-bind (parameters literals) (pattern-parameters pattern)
+  (multiple-value-bind (parameters literals) (pattern-lambda-list pattern)
     (multiple-value-bind (body documentation) (split-documentation template)
       (with-gensyms (form)
         `(progn
@@ -142,7 +142,7 @@ value of TEMPLATE is the plan text. A documentation string may come before TEMPL
                (declare (ignorable ,@(remove-if #'symbol-package
                                                 (destructuring-variables parameters))))
                ,@(loop for (variable word) in literals
-                       collect `(check-literal ',name ,form ,variable ',word))
+                       collect `(check-pattern-word ',name ,form ,variable ',word))
                ,@body))
            (show-lambda-list ',name ',(lambda-list-for-display parameters literals))
            ',name)))))

@@ -31,7 +31,7 @@
 
 ;;; Conditions.
 
-(defun check-condition (form)
+(defun reject-vector-condition (form)
   (let ((kind (form-vector-kind form)))
     (when kind
       (reject-clause (text-title) form

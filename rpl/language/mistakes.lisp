@@ -104,7 +104,7 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
                       (fl-pulsed ~:*~A), is true if a pulse has come since then." pulse))))
 
 ;; Each pulse has ended before the next begins.
-(defun joined-pulses (form)
+(defun pulses-in-and (form)
   "Return a list of the pulses in FORM, if FORM is a call of AND with several pulses; or NIL."
   (and (operator-in-p form '("AND"))
        (proper-list-p form)
@@ -115,15 +115,15 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
   "FORM waits for several pulses at the same instant."
   (let ((join (and (operator-in-p form '("WAIT-FOR" "WAIT-UNTIL" "WHENEVER"))
                    (proper-list-p form)
-                   (find-call #'joined-pulses (list (second form))))))
+                   (find-call #'pulses-in-and (list (second form))))))
     (and join
          (format nil "~A is never true: a pulse takes no time, and no two pulses come at the same ~
                       instant. To wait for all of them, write (par~{ (wait-for ~A)~})."
-                 join (joined-pulses join)))))
+                 join (pulses-in-and join)))))
 
 ;;; Commands return nothing, and commands that are not those of plans set no fluent at their end.
 
-(defun values-used-in-plan (form)
+(defun forms-used-for-value (form)
   "Return a list of the forms in FORM, a call in a plan's text, whose values FORM uses."
   (let ((name (first form)))
     (cond ((not (and (symbolp name) (proper-list-p form))) '())
@@ -138,12 +138,12 @@ WHERE is :TEXT for calls in plan text, or :LEAF for calls in forms that Lisp run
   (destructuring-bind (&optional name part &rest arguments)
       (find-if (lambda (used)
                  (and (consp used) (proper-list-p used) (plan-function-p (first used))))
-               (values-used-in-plan form))
+               (forms-used-for-value form))
     (declare (ignore arguments))
     (and name
          (format nil "~A returns nothing, because the command only begins. Write the call ~
                       alone~@[, then ~A~]~@[; the results are then in ~{~A~^, ~}~]."
-                 name (wait-for-end-text name part) (results-of-command name part)))))
+                 name (wait-for-end-text name part) (result-fluent-forms name part)))))
 
 (define-mistake command-of-others :leaf (form)
   "FORM is a command for which plans have another function. Code called later does not count."

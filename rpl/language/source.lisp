@@ -110,9 +110,9 @@ Lisp code, and looks like the prompt's command PLAN."
 (defmacro plan-only-form (form)
   "While a plan is compiled, expand to a form that stands for FORM, a form of the plan language.
 Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
-  (if *conses-of-plan-text* `(misplaced-construct ',form) (reject-in-lisp form)))
+  (if *conses-of-plan-text* `(signal-misplaced-construct ',form) (reject-in-lisp form)))
 
-(defun misplaced-construct (form)
+(defun signal-misplaced-construct (form)
   "Signal MISUSE, because Lisp runs FORM, a form of the plan language."
   (reject-in-lisp form))
 
@@ -120,7 +120,7 @@ Otherwise signal MISUSE, because FORM is in ordinary Lisp code."
   "Return the construct that FORM, a form in the expansion of a user's macro, stands for; or NIL."
   (typecase form
     ((cons (eql plan-only-form)) (second form))
-    ((cons (eql misplaced-construct)) (second (second form)))))
+    ((cons (eql signal-misplaced-construct)) (second (second form)))))
 
 ;;; Names of operators.
 

@@ -74,7 +74,7 @@ right if the parts are folded."
         ((member (task-image-look image) '(:waiting :running)) nil)
         (t (task-image-state image))))
 
-(defun draw-row-text (canvas image x y width)
+(defun draw-name-and-state (canvas image x y width)
   "Write the name, expression and state of the task of IMAGE at X, Y. Return the number of lines."
   (let* ((head (task-line-text image)) (plight (task-condition-text image))
          (room (max 8 (floor (- width x) +character-width+)))
@@ -100,7 +100,7 @@ right if the parts are folded."
 
 (defun draw-task-texts (canvas image x y width)
   "Write all texts about the task of IMAGE from X, Y down. Return the number of lines."
-  (let ((lines (draw-row-text canvas image x y width)))
+  (let ((lines (draw-name-and-state canvas image x y width)))
     (+ lines (draw-calls canvas image x (+ y (* lines +line-height+)) width))))
 
 (defun draw-task (canvas image y width)

@@ -152,7 +152,7 @@ entries (look text x y), and the height of all lines."
     (write-text-at canvas 10 y (format nil "~D more rows are left out." (page-unseen page)))))
 
 (defconstant +title-size+ 13 "The height of the font of the title, in pixels.")
-(defconstant +title-line+ 17 "The distance between lines of the title, in pixels.")
+(defconstant +title-line-height+ 17 "The distance between lines of the title, in pixels.")
 
 (defun title-lines (canvas page title width)
   "Return TITLE, by default the range of ticks of PAGE, as lines of at most WIDTH pixels."
@@ -171,10 +171,10 @@ TITLE. The default title is the range of ticks. Return the width and height in p
          (width (+ left (scale-width scale) 40))
          (lines (title-lines canvas page title (- width 20)))
          (top (+ 30 (draw-legend canvas (legend-of-rows rows) 10
-                                 (+ 10 (* +title-line+ (length lines)))
+                                 (+ 10 (* +title-line-height+ (length lines)))
                                  (- width 10))))
          (bottom (+ top (rows-height rows))))
-    (loop for line in lines for y from 16 by +title-line+
+    (loop for line in lines for y from 16 by +title-line-height+
           do (draw-words canvas draw-gcontext* 10 y line :size +title-size+ :bold-p t))
     (draw-axis canvas scale top bottom)
     (write-text-at canvas 10 (- top 10) "ticks" #x606060)

@@ -64,7 +64,7 @@ WRONG-ARGUMENT if there is a WORLD, because tasks do not exist in believed world
 (defun question-of-plan (task plan arguments options)
   (let ((question (make-question task (asking-interface task) (fluent-value plan)
                                  (fluent-value arguments) options)))
-    (when (question-option question :world) (check-known-in-belief question))
+    (when (question-option question :world) (check-no-run-objects question))
     question))
 
 (define-construct project (plan &key arguments trials horizon seed cost world print)
@@ -117,14 +117,14 @@ McDermott's projection of reactive plans, 1992.)"
     +parked+))
   (:unwind
    (when (in-state-p inside)
-     (note-signal memory signal)
+     (note-ending-signal memory signal)
      (when (typep signal 'plan-failure)
        (next ended)
        (values t frame nil)))))
 
 ;;; From outside.
 
-(defun interface-for-projection (plan)
+(defun interface-to-project (plan)
   "Return the interface whose plans are projected with PLAN. Signals MISUSE inside a plan's step."
   (let ((interface (if (and (task-p plan) (task-runner plan)
                             (interface-p (runner-client (task-runner plan))))
@@ -147,11 +147,11 @@ McDermott's projection of reactive plans, 1992.)"
 (defun project-plan (plan &key arguments trials horizon seed cost world print)
   "Return a projection of PLAN. This is PROJECT for Lisp code outside of plans. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
-  (let* ((interface (if world nil (interface-for-projection plan)))
+  (let* ((interface (if world nil (interface-to-project plan)))
          (question (make-question nil interface plan arguments
                                   (list :trials trials :horizon horizon :seed seed :cost cost
                                         :world world :print print))))
-    (when world (check-known-in-belief question))
+    (when world (check-no-run-objects question))
     (cond (*rolling-out* (projection-without-rollouts question))
           (t (first (project-branches question (if world nil (fork-with-question question))))))))
 
@@ -201,5 +201,5 @@ on the run. Fails with CANNOT-FORK if the run cannot be forked."
     (note-question-end memory :succeeded value)
     (values (frame-up frame) value)))
   (:unwind
-   (when (and memory (in-state-p inside)) (note-signal memory signal))
+   (when (and memory (in-state-p inside)) (note-ending-signal memory signal))
    nil))

@@ -30,7 +30,7 @@ without waiting" :addition)
   (broken nil (or null keyword)
           "the option, :COST or :WORLD, whose function's error ended the rollout, or NIL"))
 
-(define-shared rollout-start rollout)
+(define-shared-types rollout-start rollout)
 
 (addition rollout-succeeded-p)
 (defun rollout-succeeded-p (rollout)
@@ -81,7 +81,7 @@ without waiting" :addition)
   (horizon 0 real "how many ticks each rollout was given" :addition)
   (rollouts '() list "the list of the projection's rollouts, in order of their trials" :addition))
 
-(define-shared projection)
+(define-shared-types projection)
 
 (addition projection-successes)
 (defun projection-successes (projection)

@@ -50,7 +50,7 @@ rollout, ENDED and RESULT say how the branch or plan on trial has ended."
     (setf (question-ended question) state
           (question-result question) result)))
 
-(defun note-signal (question signal)
+(defun note-ending-signal (question signal)
   "Record, in a rollout, that SIGNAL has ended QUESTION's trial. RETURN-FROM counts as success."
   (cond ((typep signal 'plan-failure) (note-question-end question :failed signal))
         ((escape-p signal) (note-question-end question :succeeded nil))

@@ -87,7 +87,7 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
 ;;; bound, and no object of it is accepted as an argument. Objects of it in global variables can be
 ;;; read, but not changed or commanded. Fluents have a realm for each rollout.
 
-(defun object-of-run (object)
+(defun find-run-object (object)
   "Return an object of a run: OBJECT, or an element of the list or vector OBJECT; or NIL."
   (let ((seen (make-hash-table :test 'eq)))
     (labels ((look (object)
@@ -104,11 +104,11 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
                  (t (and (kind-of object) object)))))
       (look object))))
 
-(defun check-known-in-belief (question)
+(defun check-no-run-objects (question)
   "Signal WRONG-ARGUMENT if QUESTION is about an object of this run, which believed worlds lack."
   (let ((object (or (question-subject question)
-                    (object-of-run (list (question-plan question)
-                                         (question-arguments question))))))
+                    (find-run-object (list (question-plan question)
+                                           (question-arguments question))))))
     (when object
       (reject-argument (question-operator question)
                        (if (question-subject question) 'plan :arguments)

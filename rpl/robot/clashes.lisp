@@ -60,7 +60,7 @@ outside of plans. After too many takeovers, let time pass."
     (unless same-plan-p (setf (runner-note runner 'commands) nil))
     (when (< *most-takeovers* (incf (cdr count)))
       (warn-of-takeovers interface (takeover-text resource older newer))
-      ;; One plan has not waited for the tick; see COMMANDS-IN-TICK.
+      ;; One plan has not waited for the tick; see COMMAND-COUNT-ENTRY.
       (when same-plan-p (setf (runner-note runner 'cut-short) (plan-runner-tick runner)))
       (exhaust-reaction runner))))
 
@@ -76,7 +76,7 @@ outside of plans. After too many takeovers, let time pass."
   "How many commands a plan may issue to its robot before time passes. A plan that issues more fails
 with class :TOO-MANY-COMMANDS. Commands of cleanups do not count.")
 
-(defun commands-in-tick (runner task)
+(defun command-count-entry (runner task)
   "Return a cons of TASK, a top-level task of RUNNER, and the number of commands that TASK has
 issued in this tick. If takeovers cut short an earlier tick, its commands count, too."
   (let ((tick (plan-runner-tick runner)) (note (runner-note runner 'commands)))
@@ -102,7 +102,7 @@ returns the settings of fluents at that end. Return NIL if no fluent is pulsed."
 (defun count-command (task command outcome resource)
   "Count that TASK issues COMMAND on RESOURCE. Fail if the plan of TASK has issued more than
 *PLAN-COMMAND-LIMIT* commands in this tick. OUTCOME is as in WAIT-FOR-ACTION-TEXT."
-  (let ((count (commands-in-tick (task-runner task) (task-top task))))
+  (let ((count (command-count-entry (task-runner task) (task-top task))))
     (when (< *plan-command-limit* (incf (cdr count)))
       (fail :class :too-many-commands :limit *plan-command-limit*
             :remedy (format nil "A loop issues rpl-~(~A~) without waiting, and no time passes. Put ~

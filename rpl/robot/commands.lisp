@@ -64,19 +64,19 @@
 
 ;;; Hands. One inside a box inside a bin is, when it comes out of the box, inside the bin.
 
-(defun container-depth (hand)
+(defun hand-container-depth (hand)
   (loop for outer = (part-location hand) then (outer-location outer)
         while outer count t))
 
 (defun record-hand-entry (hand destination)
   (setf (hand-way-in hand)
-        (cons destination (last (hand-way-in hand) (1- (container-depth hand)))))
+        (cons destination (last (hand-way-in hand) (1- (hand-container-depth hand)))))
   destination)
 
 (defun record-hand-exit (hand)
   "Record that HAND has left its container. Return the container that HAND is still in, or NIL."
   (first (setf (hand-way-in hand)
-               (last (hand-way-in hand) (container-depth hand)))))
+               (last (hand-way-in hand) (hand-container-depth hand)))))
 
 (define-outcome (hand-insert hand-insert-bin) (destination)
   (:when (null err) (:set hand-inside* (record-hand-entry resource destination)))

@@ -167,11 +167,11 @@ started a new run. Fluents keep their last values."
 ;;; Plans are copied while they rest, between two reactions: then all that they are about to do is
 ;;; in their tasks, and in what was posted to them.
 
-(defmethod client-forked-p ((interface interface) copier)
+(defmethod client-in-copied-run-p ((interface interface) copier)
   (eq (interface-simulation interface) (copier-option copier :simulation)))
 
 (defmethod copy-plan-value ((interface interface) fork)
-  (if (client-forked-p interface fork)
+  (if (client-in-copied-run-p interface fork)
       (copy-slots interface fork)
       interface))
 

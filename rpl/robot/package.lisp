@@ -55,7 +55,7 @@
                 #:waiting-parts #:failure-text #:misspelt-handler-text #:lisp-failure
                 #:waiting-plans-text #:advice-on-endless-waits #:fluents-awaited
                 #:fluent-text #:note-plan-function #:has-plan-function-p #:plan-call-text
-                #:pulse-of-command #:last-command #:last-pulse #:endless-advice
+                #:pulse-of-command #:last-command #:last-pulse-tick #:endless-advice
                 #:+no-fluent+ #:robot-fluent-p #:plan-backtrace #:operator-called-p
                 #:task-awaiting
                 #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
@@ -63,7 +63,7 @@
                 #:plan-trace #:valve #:make-valve #:valve-losers #:note-command
                 #:with-answer #:runner-in-use #:*step-plans* #:*plan-start-hooks*
                 #:start-trace
-                #:task-runner #:leave-plan #:runner-client #:client-forked-p
+                #:task-runner #:leave-plan #:runner-client #:client-in-copied-run-p
                 #:call-with-client-still
                 #:note-plan-trouble #:note-plans-shown #:*realm*
                 #:copy-back-values #:+root+

@@ -206,7 +206,7 @@ the remark on the same failure of a part in this tick."
 (defun handle-task-end (interface task)
   (atomic-remove task (interface-ends-requested interface))
   (cond ((eq :succeeded (task-state task))
-         (warn-of-unawaited interface task)
+         (warn-of-unawaited-action interface task)
          (warn-of-unread-error interface task))
         (t (interrupt-actions interface task)
            (add-end-remark interface task)))

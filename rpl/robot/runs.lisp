@@ -54,7 +54,7 @@ to another robot since. Signals MISUSE if plans still drive the robot of the old
   "Start PLAN with the list ARGUMENTS in INTERFACE, and return its task. Call the function NOTE with
 the task before anything else can happen."
   (check-not-secluded (interface-simulation interface))
-  (apply #'record-plan-action interface #'do-traced *trace-plans* #'begin-plan plan arguments)
+  (apply #'record-plan-action interface #'call-with-trace *trace-plans* #'begin-plan plan arguments)
   (prog1 (with-plans (interface)
            ;; Live, plans may not have reacted for long.
            (note-tick (interface-runner interface)

@@ -21,13 +21,13 @@
 (add-listener *plan-start-hooks* trace-if-wanted)
 
 ;; The state that was restored may be older than the wish for a trace.
-(defun trace-rewound (old new)
+(defun trace-rewound-run (old new)
   (declare (ignore old))
   (when *trace-plans*
     (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
       (with-plans (interface) (start-trace (interface-runner interface))))))
 
-(add-listener *rewind-hooks* trace-rewound)
+(add-listener *rewind-hooks* trace-rewound-run)
 
 (defun call-with-plans-in-use (function)
   "Call FUNCTION with the runner of the plans in use, or with NIL. No plan goes on meanwhile."

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*robot-to-drive*))
+(export '(*commanded-robot-hook*))
 
 (defun end-plans-in-this-thread (interface)
   "End the plans of the closing INTERFACE in this thread. An interrupt ends one cleanup at most."
@@ -34,11 +34,11 @@ thread, or a plan has called this function, the plans end as soon as they can."
       (push (interface-ender interface) (robot-enders (interface-robot interface))))))
 
 ;; The prompt sets it to a function that returns the robot that it commands.
-(defvar *robot-to-drive* (constantly nil)
+(defvar *commanded-robot-hook* (constantly nil)
   "A function that returns a robot or NIL: which of several robots plans drive by default.")
 
 (defun commanded-robot ()
-  (and *simulation* (funcall *robot-to-drive*)))
+  (and *simulation* (funcall *commanded-robot-hook*)))
 
 (defun check-world-to-drive (robot)
   (let ((world (robot-world robot)))
@@ -48,7 +48,7 @@ thread, or a plan has called this function, the plans end as soon as they can."
                    (with-simulation (~A) ...), or after (simulator ~A)."
                   robot (eq (world-map world) (world-map *world*)) robot robot))))
 
-(defun plans-must-end-for-p (interface simulation)
+(defun plans-must-end-first-p (interface simulation)
   "True if the plans of INTERFACE must end before other plans can run in SIMULATION. The plans of a
 live run go on while a headless simulation runs inside of the live run."
   (or (eq simulation (interface-simulation interface))
@@ -73,17 +73,18 @@ another robot of the same run, or if one of these plans has called RPL-INIT-ROBO
        robot (length tasks) (mapcar #'task-label tasks) before same-p))))
 
 ;; A binding of *TRACE-PLANS* around a call is gone when the call is repeated.
-(defun do-traced (traced-p function &rest arguments)
+(defun call-with-trace (traced-p function &rest arguments)
   (let ((*trace-plans* (or traced-p *trace-plans*)))
     (apply function arguments)))
 
 ;; A repeated run gives the eras that it had, so that its tasks are recognized.
-(defun drive-in-eras (robot eras)
+(defun drive-robot-with-eras (robot eras)
   "Let plans drive ROBOT, as RPL-INIT-ROBOT does, with the ERAS of tasks. Return the new interface."
   ;; Other threads may set the variable meanwhile.
   (let ((simulation (robot-simulation robot)) (before *default-interface*))
-    (record-outside-act simulation #'do-traced *trace-plans* #'drive-in-eras robot eras)
-    (when (and before (plans-must-end-for-p before simulation)) (close-interface before))
+    (record-outside-act simulation #'call-with-trace *trace-plans* #'drive-robot-with-eras robot
+                        eras)
+    (when (and before (plans-must-end-first-p before simulation)) (close-interface before))
     (make-fluents robot)
     (let ((interface (make-interface robot simulation eras (commanded-robot))))
       (attach-interface interface)
@@ -93,7 +94,7 @@ another robot of the same run, or if one of these plans has called RPL-INIT-ROBO
 
 (defun init-robot (robot)
   (check-world-to-drive robot)
-  (drive-in-eras robot (list (cons (gensym "ERA") 0))))
+  (drive-robot-with-eras robot (list (cons (gensym "ERA") 0))))
 
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)

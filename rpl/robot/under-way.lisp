@@ -50,7 +50,7 @@ cleanup. OUTCOME returns the settings of fluents for an answer."
 
 ;;; Settings. (:error fluent code) sets a fluent as :SET does.
 
-(defun plain-settings (settings)
+(defun settings-to-apply (settings)
   (loop for (kind . more) in settings
         collect (cons (if (eq kind :error) :set kind) more)))
 
@@ -97,7 +97,7 @@ time is carried out first, and a command in the background goes on."
                            (remove name (interface-pulses interface)
                                    :key #'first :test #'equal))))))
 
-(defmethod last-pulse ((interface interface) task fluent)
+(defmethod last-pulse-tick ((interface interface) task fluent)
   (destructuring-bind (&optional name plan tick)
       (assoc (fluent-name fluent) (interface-pulses interface) :test #'equal)
     (and name (eql plan (task-serial (task-top task))) tick)))
@@ -113,7 +113,7 @@ time is carried out first, and a command in the background goes on."
         (apply-settings (if (action-told-p action)
                             ;; What the robot is or has.
                             (remove :set settings :key #'first :test-not #'eq)
-                            (plain-settings settings)))))))
+                            (settings-to-apply settings)))))))
 
 (defun post-answer (interface action err results)
   "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of INTERFACE."
@@ -139,7 +139,7 @@ time is carried out first, and a command in the background goes on."
   (notify-at-rest (action-task action)
                   (lambda ()
                     (with-answer ((action-issue action) :interrupt)
-                      (apply-settings (plain-settings
+                      (apply-settings (settings-to-apply
                                        (funcall (action-outcome action) (action-resource action)
                                                 :interrupt)))))))
 
@@ -210,7 +210,7 @@ because the robot is gone, end the plan at work."
 
 ;; Another thread may end the run at any time, and the robot may be in another run by now: then the
 ;; end of the run has interrupted the command, or will.
-(defun withdraw-action (action interface)
+(defun interrupt-action (action interface)
   "Interrupt the command of ACTION, unless the run of INTERFACE is over."
   (let ((simulation (interface-simulation interface)))
     (flet ((over-p ()
@@ -229,7 +229,7 @@ because the robot is gone, end the plan at work."
                (eq task (task-top (action-task action)))
                (not (action-cleanup-p action))
                (not (command-instant-p (action-command action))))
-      (withdraw-action action interface)
+      (interrupt-action action interface)
       (report-interrupted action))))
 
 ;;; Fluents are set by the commands of plans only. The end of a command of the prompt or a program

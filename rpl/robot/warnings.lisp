@@ -137,7 +137,7 @@ replaces the record of an earlier end of the same command."
       (let ((wait (wait-for-action-text (action-outcome action) (action-resource action))))
         (and wait (format nil "If the plan should end with the command, let the plan ~A." wait)))))
 
-(defun warn-of-unawaited (interface task)
+(defun warn-of-unawaited-action (interface task)
   (let ((action (first (unawaited-actions interface task))))
     (when action
       (warn-once-in-run interface (list :unawaited (task-label task))
@@ -173,7 +173,7 @@ replaces the record of an earlier end of the same command."
   (format nil "~A, which nothing in the run will change.~A"
           (waiting-plans-text (list task)) (advice-on-endless-waits parts)))
 
-(defun warn-of-stranded (interface task parts)
+(defun warn-of-stranded-task (interface task parts)
   "Warn once that TASK, a plan of INTERFACE, will not go on because PARTS of TASK wait in vain."
   (let ((simulation (interface-simulation interface))
         (awaited (mapcar #'task-awaiting parts)))
@@ -207,7 +207,7 @@ replaces the record of an earlier end of the same command."
 
 (defun warn-of-stranded-plans (interface)
   (loop for (task parts) in (stranded-plans interface)
-        do (warn-of-stranded interface task parts)))
+        do (warn-of-stranded-task interface task parts)))
 
 (defmethod participant-after-ticks ((interface interface) simulation)
   (unless (simulation-over simulation) (warn-of-stranded-plans interface)))

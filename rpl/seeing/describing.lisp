@@ -5,7 +5,7 @@
 ;;; A node has the names of its visible variables (NODE-NAMES), a frame the environment with their
 ;;; values. Variables without a home package are the compiler's own, and are not shown.
 
-(defun note-task-seen (task)
+(defun note-task-shown (task)
   (when (task-runner task) (note-plans-shown (runner-client (task-runner task)))))
 
 (addition task-stack)
@@ -13,7 +13,7 @@
   "Return a list of the expressions that TASK is evaluating, innermost first: one for each call of a
 plan in progress. Expressions of the tasks around TASK are left out. Return () when TASK is over."
   (check-argument task-stack task (task-p task) "a task, as begin-plan returns")
-  (note-task-seen task)
+  (note-task-shown task)
   (forms-under-way (task-frame task)))
 
 ;;; Variables.
@@ -91,7 +91,7 @@ first. Each variable, a list (name value), comes with the outermost expression w
   "Return the variables of the plan that are visible to TASK: a list of lists (name value),
 innermost first, without shadowed variables. Return () when TASK is over."
   (check-argument task-variables task (task-p task) "a task, as begin-plan returns")
-  (note-task-seen task)
+  (note-task-shown task)
   (and (task-frame task) (frame-variables (task-frame task))))
 
 ;;;; What DESCRIBE tells

@@ -23,7 +23,7 @@ the running plan, or else the runner in use. Signals MISUSE without a runner."
   "Return a task of RUNNER, and the name of its variable that is or contains VALUE; or NIL."
   (dolist (task (all-tasks runner) nil)
     (loop for (nil . variables) in (stack-entries task)
-          for (name) = (find-if (lambda (variable) (contains-object-p (second variable) value))
+          for (name) = (find-if (lambda (variable) (contains-value-p (second variable) value))
                                 variables)
           do (when name (return-from task-whose-variable-holds (values task name))))))
 

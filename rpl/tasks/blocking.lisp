@@ -100,7 +100,7 @@ itself, innermost first. Leave out parts that were stopped before."
   (let* ((runner (task-runner task))
          (current (runner-current runner)))
     (when (and current (eq (task-state current) :running) (part-of-p current task))
-      (setf (runner-mask runner) (logior +interrupt+ (runner-mask runner))))))
+      (setf (runner-mask runner) (logior +interrupt-bit+ (runner-mask runner))))))
 
 (defun block-task (task &optional suspension)
   "Keep TASK from running. Blocks are counted. If SUSPENSION is true, TASK is shown as suspended."

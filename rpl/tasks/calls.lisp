@@ -4,8 +4,8 @@
 
 (export '(lambda-list-shape lambda-list-text unknown-keyword-text arguments-misfit-text
                             note-plan-function
-          has-plan-function-p plan-call-text wait-for-end-text last-command last-pulse
-          plan-function-p results-of-command pulse-of-command fluent-of-error-code))
+          has-plan-function-p plan-call-text wait-for-end-text last-command last-pulse-tick
+          plan-function-p result-fluent-forms pulse-of-command fluent-of-error-code))
 
 (define-record (shape (:constructor make-shape (least most fixed keys open)))
   "The number of arguments, LEAST to MOST, and the keywords that a function or plan takes."
@@ -115,7 +115,7 @@ the command to part number PART. Return NIL if no fluent is pulsed at the end."
     (declare (ignore results))
     (wait-form-text (subst part variable wait))))
 
-(defun results-of-command (name part)
+(defun result-fluent-forms (name part)
   "Return the forms of the fluents for the results of the plan function NAME on part number PART."
   (destructuring-bind (&optional variable wait results) (get name 'end)
     (declare (ignore wait))
@@ -129,7 +129,7 @@ function. CLIENT has recorded the calls.")
     (declare (ignore client task))
     nil))
 
-(defgeneric last-pulse (client task fluent)
+(defgeneric last-pulse-tick (client task fluent)
   (:documentation "Return the tick of the last pulse of FLUENT, if the end of a command of the plan
 of TASK caused this pulse; otherwise NIL. CLIENT has recorded the commands.")
   (:method (client task fluent)

@@ -58,7 +58,7 @@ the failure as steps that would take as long, so that a plan that only fails use
 ;;; even between two changes that belong together. Only what tasks contain is reliable then: their
 ;;; parents, states and frames. Everything else, such as queues, timers and watchers, is rebuilt.
 
-(defun repair-live-parts (task)
+(defun repair-part-links (task)
   "Return TASK and its parts that are not over, and repair the links between them."
   (let ((children (loop for child = (task-newest-child task) then (task-older child)
                         repeat 1000000
@@ -71,7 +71,7 @@ the failure as steps that would take as long, so that a plan that only fails use
           for previous = child
           do (setf (task-older child) older
                    (task-newer child) newer))
-    (cons task (mapcan #'repair-live-parts children))))
+    (cons task (mapcan #'repair-part-links children))))
 
 (defun repair-queues (runner tasks)
   "Rebuild the ready queues of RUNNER from TASKS, all its tasks. Only ready tasks are queued."
@@ -85,7 +85,7 @@ the failure as steps that would take as long, so that a plan that only fails use
         (runner-notices runner) '()
         (runner-blocks runner) (reduce #'+ tasks :key #'task-blocked))
   (dolist (task tasks)
-    (when (or (eq :running (task-state task)) (notice-p (task-awaiting task)))
+    (when (or (eq :running (task-state task)) (pending-notice-p (task-awaiting task)))
       (setf (task-awaiting task) nil
             (task-state task) :ready))
     (when (eq :ready (task-state task)) (make-ready task))))
@@ -130,7 +130,7 @@ the failure as steps that would take as long, so that a plan that only fails use
 
 (defun repair-runner (runner)
   (setf (runner-roots runner) (remove-if #'task-over-p (runner-roots runner)))
-  (let ((tasks (mapcan #'repair-live-parts (plan-runner-tasks runner))))
+  (let ((tasks (mapcan #'repair-part-links (plan-runner-tasks runner))))
     (repair-queues runner tasks)
     (repair-timers runner tasks)
     (repair-watchers runner tasks)
@@ -163,7 +163,7 @@ the failure as steps that would take as long, so that a plan that only fails use
             (t (setf (task-signal task) failure)
                (make-ready-first task))))))
 
-(defun end-plan-of (task)
+(defun end-plan-of-task (task)
   "Evaporate the whole plan of TASK, which is ready, and abandon a cleanup in progress."
   (let ((cleaner (find-if #'task-cleaning (lineage task))))
     (evaporate (task-top task))
@@ -174,7 +174,7 @@ the failure as steps that would take as long, so that a plan that only fails use
   (let ((task (runner-current runner)))
     (setf (task-signal task) nil)
     (make-ready-first task)
-    (end-plan-of task)))
+    (end-plan-of-task task)))
 
 (defun report-abort (runner)
   (let ((task (runner-current runner)))
@@ -187,7 +187,7 @@ the failure as steps that would take as long, so that a plan that only fails use
       (setf (task-state task) :ready
             (task-signal task) nil))
     (repair-runner runner)
-    (when (and task (not (task-over-p task))) (end-plan-of task))))
+    (when (and task (not (task-over-p task))) (end-plan-of-task task))))
 
 ;;; Calling.
 

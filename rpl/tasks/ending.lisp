@@ -140,7 +140,7 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
   (loop for child = (task-newest-child task) then older
         while child
         for older = (task-older child)
-        do (unless (cannot-evaporate-p child) (evaporate-here child))))
+        do (unless (cannot-evaporate-p child) (begin-evaporation child))))
 
 (defun cannot-evaporate-p (task)
   (or (task-over-p task) (task-ending-p task) (eq (task-state task) :created)))
@@ -158,16 +158,16 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
            (request-end task))
           (t (when (task-parent task)
                (note-plan-trouble (runner-client (task-runner task)) task nil))
-             (evaporate-here task)))))
+             (begin-evaporation task)))))
 
-(defun evaporate-here (task)
+(defun begin-evaporation (task)
   (setf (task-ending-p task) t)
   (cond ((task-cleaning task)
          (setf (frame-data (first (last (task-cleaning task)))) :evaporate))
         ((eq (task-state task) :running)
          (setf (task-signal task) :evaporate)
          (setf (runner-mask (task-runner task))
-               (logior +interrupt+ (runner-mask (task-runner task)))))
+               (logior +interrupt-bit+ (runner-mask (task-runner task)))))
         (t (stop-waiting task)
            (evaporate-with-parts task)))
   ;; A blocked task may run again to clean up.

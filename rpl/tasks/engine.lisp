@@ -68,7 +68,7 @@ the task, which runs at the next reaction."
 ;;; budget, slices are shares of it. A plan may then need several from a command to its wait, so
 ;;; there another limit than slices decides when posts are applied.
 
-(defun run-ready (runner)
+(defun run-ready-tasks (runner)
   "Run the ready tasks of RUNNER. Return :idle when no ready task has steps left in its slice.
 Return :budget when the steps of the reaction are used up, or when all tasks stop while one thinks."
   (loop
@@ -77,17 +77,17 @@ Return :budget when the steps of the reaction are used up, or when all tasks sto
               (runner-tasks-stopped-p runner))
       (return :budget))
     (when (runner-notices runner) (deliver-due-notices runner))
-    (let ((task (take-ready runner)))
+    (let ((task (take-ready-task runner)))
       (cond (task (run-task task))
             ((and (runner-notices runner) (deliver-due-notices runner)))
             (t (return :idle))))))
 
 (defun run-round (runner)
-  "Run the ready tasks of RUNNER for one round, even if some meet trouble. Return RUN-READY's value.
+  "Run the ready tasks of RUNNER for one round, even if some meet trouble. Return RUN-READY-TASKS's value.
 If a tick's budget ends during a round, the next tick continues it, so no task loses its turn."
   (unless (shiftf (runner-broken-off-p runner) nil)
     (incf (runner-round runner)))
-  (let ((outcome (loop thereis (call-handling-trouble runner #'run-ready))))
+  (let ((outcome (loop thereis (call-handling-trouble runner #'run-ready-tasks))))
     (when (and (eq outcome :budget) (runner-charged-p runner))
       (setf (runner-broken-off-p runner) t))
     outcome))
@@ -209,7 +209,7 @@ abandoned, with a warning for each. No task is left. Charges end, and posts are 
 
 (defun runner-idle-p (runner)
   "True if no task of RUNNER is ready and nothing is posted: only time or a post can change RUNNER."
-  (not (or (any-ready-p runner) (outside-request-p runner))))
+  (not (or (any-task-ready-p runner) (outside-request-p runner))))
 
 (defun skip-idle-tick (runner tick)
   "Set the time of RUNNER to TICK without a reaction, if no task would run then. Return true if so."

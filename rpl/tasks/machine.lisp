@@ -57,12 +57,12 @@ environment."))
   (finish-output *query-io*)
   (list (evaluate-form (read *query-io*))))
 
-(defvar *leaf-offers-restarts-p* nil
+(defvar *inside-leaf-restarts-p* nil
   "True while a leaf offers restarts. If true, the step around the leaf offers no restarts.")
 
 (defun call-leaf-with-restarts (leaf environment)
   "Return the value of LEAF in ENVIRONMENT, with the restarts RETRY and USE-VALUE."
-  (let ((text (form-text (node-form leaf))) (*leaf-offers-restarts-p* t))
+  (let ((text (form-text (node-form leaf))) (*inside-leaf-restarts-p* t))
     (loop
       (restart-case (return (funcall (leaf-function leaf) environment))
         (retry ()

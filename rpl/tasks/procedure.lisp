@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(entry-for declared-names known-lambda-list reject-lisp-call procedures-to-offer
+(export '(entry-for-arity declared-names known-lambda-list reject-lisp-call procedure-names-to-offer
           anonymous-procedure declare-procedure procedure-usable-p ensure-procedure enter-plan
           install-procedure make-procedure procedure check-arguments procedure-name-p node-parts))
 
@@ -53,22 +53,22 @@ MISUSE" :writable))
   "Return a list of all plan procedures that are defined, in order of definition."
   (remove-if-not #'procedure-usable-p (registered-procedures)))
 
-(defun procedures-to-offer ()
+(defun procedure-names-to-offer ()
   "Return the names of all defined plan procedures, those of users first, the newest first."
   (remove-if-not (lambda (name) (procedure-usable-p (registered-procedure name)))
                  (names-to-suggest *procedures*)))
 
-(defun live-namesake (name)
+(defun defined-namesake (name)
   "Return the newest defined procedure whose name is the same as NAME, in any package; or NIL."
   (find-if (lambda (procedure)
              (and (same-name-p name (procedure-name procedure)) (procedure-usable-p procedure)))
            (registered-procedures) :from-end t))
 
 ;; Users give a call, a form of plans, a function, or the name of a function for that of a plan.
-(defun list-remedy (list)
+(defun list-as-plan-remedy (list)
   (let ((name (first list)))
     (if (and (symbolp name)
-             (or (live-namesake name) (not (fboundp name))))
+             (or (defined-namesake name) (not (fboundp name))))
         (format nil "Give the name, and then its arguments: (run-plan '~A~{ ~S~})."
                 name (abridged (rest list)))
         (format nil "A form is not a plan. Make a plan of it: (run-plan (interp-lambda () ~
@@ -80,7 +80,7 @@ MISUSE" :writable))
   (flet ((say (control &rest arguments)
            (let ((*print-case* :downcase)) (apply #'format nil control arguments))))
     (cond ((and (consp name) (proper-list-p name))
-           (let ((*print-case* :downcase) (*print-pretty* nil)) (list-remedy name)))
+           (let ((*print-case* :downcase) (*print-pretty* nil)) (list-as-plan-remedy name)))
           ((functionp name)
            (let ((plan (find name (registered-procedures) :key #'procedure-stub)))
              (say "~:[A function is not a plan; DEF-INTERP-PROC defines a plan~;Give the plan's ~
@@ -99,7 +99,7 @@ MISUSE" :writable))
   (let ((remedy (plan-remedy name)))
     (if remedy
         (error 'unknown-name :kind "plan procedure" :name name :remedy remedy)
-        (reject-name "plan procedure" name (procedures-to-offer)))))
+        (reject-name "plan procedure" name (procedure-names-to-offer)))))
 
 (defun find-procedure (name &optional (errorp t))
   "Return the plan procedure with the name NAME, a symbol or string. The procedure of the symbol
@@ -107,7 +107,7 @@ itself comes first, then the newest procedure of that name in other packages. If
 procedure, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
   (let ((known (registered-procedure name nil)))
     (cond ((and known (procedure-usable-p known)) known)
-          ((and (typep name '(or symbol string)) (live-namesake name)))
+          ((and (typep name '(or symbol string)) (defined-namesake name)))
           (errorp (reject-procedure name)))))
 
 (defmethod print-object ((procedure procedure) stream)
@@ -233,8 +233,8 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
                                         :wrong-p (constantly t))))
     (when trouble (reject-arguments procedure arguments trouble))))
 
-(declaim (inline entry-for))
-(defun entry-for (procedure count)
+(declaim (inline entry-for-arity))
+(defun entry-for-arity (procedure count)
   "Return a function of COUNT arguments that returns the environment for the body of PROCEDURE."
   (declare (type procedure procedure) (type fixnum count))
   (if (and (<= (procedure-least procedure) count (procedure-most procedure))
@@ -282,7 +282,7 @@ procedures whose DEF-INTERP-PROC was compiled or loaded.")
           unless (member name '(form names states))
             append (code-in (instance-slot node index)))))
 
-(defun shared-code (code)
+(defun shareable-nodes (code)
   "If forks can share all nodes reachable from CODE, a node or procedure, return a list of these
 nodes, and true. Otherwise some node has closed over something: return NIL and false."
   (let ((seen (make-hash-table :test 'eq)) (nodes '()) (work (list code)))
@@ -297,11 +297,11 @@ nodes, and true. Otherwise some node has closed over something: return NIL and f
                     (setf (gethash object seen) t)
                     (when (node-p object) (push object nodes))
                     (setf work (append (parts-of-code object) work))))
-                 (t (return-from shared-code (values '() nil))))))
+                 (t (return-from shareable-nodes (values '() nil))))))
     (values nodes t)))
 
 (defun determine-sharing (node)
-  (multiple-value-bind (nodes shared-p) (shared-code node)
+  (multiple-value-bind (nodes shared-p) (shareable-nodes node)
     (dolist (each nodes) (setf (node-sharing each) :shared))
     (setf (node-sharing node) (if shared-p :shared :per-run))))
 
@@ -314,6 +314,6 @@ nodes, and true. Otherwise some node has closed over something: return NIL and f
 
 (defmethod copy-plan-value ((procedure procedure) fork)
   (if (or (definition-current-p procedure)
-          (nth-value 1 (shared-code procedure)))
+          (nth-value 1 (shareable-nodes procedure)))
       procedure
       (copy-slots procedure fork)))

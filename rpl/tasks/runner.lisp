@@ -3,17 +3,17 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(*runaway-limit* only-ready-task-p blocked-p make-ready plan-runner
-          counted-steps plan-runner-tasks plan-runner-tick runner-note client-forked-p
+          counted-steps plan-runner-tasks plan-runner-tick runner-note client-in-copied-run-p
           call-with-client-still note-plan-trouble note-plans-shown all-tasks task-numbered
           note-outside-call current-counterpart))
 
 ;;; Ready tasks queue first-in first-out by level; the highest level runs first. Bit n of MASK is
-;;; set while tasks of level n may be queued. The bit +INTERRUPT+, above all of these, is set when
+;;; set while tasks of level n may be queued. The bit +INTERRUPT-BIT+, above all of these, is set when
 ;;; the running task must check its own signal.
 
 (defconstant +levels+ 8 "The number of levels of tasks: the level of the plan, and those of nested
 policies.")
-(defconstant +interrupt+ (ash 1 +levels+))
+(defconstant +interrupt-bit+ (ash 1 +levels+))
 
 (defconstant +slice+ 10000
   "The number of steps that a task may take before other tasks and posted changes get their turn.
@@ -90,7 +90,7 @@ frame, or NIL" :writable :export)
 
 ;;; A fork of a run copies the runner of that run. A runner of another run is not copied.
 
-(defgeneric client-forked-p (client copier)
+(defgeneric client-in-copied-run-p (client copier)
   (:documentation "True if CLIENT, a plan runner's client, belongs to the run that COPIER copies.")
   (:method (client copier) (declare (ignore client copier)) nil))
 
@@ -113,7 +113,7 @@ of CLIENT. If FAILURE is NIL, note that TASK, a part of a plan, was just ended."
   (:method (client task failure) (declare (ignore client task failure))))
 
 (defmethod home-forked-p ((runner plan-runner) copier)
-  (client-forked-p (runner-client runner) copier))
+  (client-in-copied-run-p (runner-client runner) copier))
 
 (defmethod copy-plan-value ((runner plan-runner) fork)
   (if (home-forked-p runner fork)
@@ -220,11 +220,11 @@ in COUNTED-STEPS, the slow step counts as one step, or as none if TASK is exempt
   (and (= (task-round task) (runner-round runner))
        (<= (task-slice task) 0)))
 
-(defun take-ready (runner)
+(defun take-ready-task (runner)
   "Return RUNNER's next task to run, or NIL. Put aside blocked tasks and tasks with no slice left."
   (declare #.*hot* (type plan-runner runner))
   (loop
-    (let ((level (1- (integer-length (logandc2 (runner-mask runner) +interrupt+)))))
+    (let ((level (1- (integer-length (logandc2 (runner-mask runner) +interrupt-bit+)))))
       (when (minusp level) (return nil))
       (let ((ring (svref (runner-rings runner) level)))
         (declare (type ring ring))
@@ -242,8 +242,8 @@ in COUNTED-STEPS, the slow step counts as one step, or as none if TASK is exempt
   (dolist (task (nreverse (shiftf (runner-spent runner) '())))
     (when (eq (task-state task) :ready) (make-ready task))))
 
-(defun any-ready-p (runner)
-  (or (and (plusp (logandc2 (runner-mask runner) +interrupt+))
+(defun any-task-ready-p (runner)
+  (or (and (plusp (logandc2 (runner-mask runner) +interrupt-bit+))
            (some (lambda (ring) (plusp (ring-count ring))) (runner-rings runner)))
       (some (lambda (task) (eq (task-state task) :ready)) (runner-spent runner))))
 

@@ -7,20 +7,21 @@
 ;;; A task must not notify another by a pulse before the other waits for it. So the sender waits
 ;;; until the receiver is at rest: until it waits, is over, is blocked, or has used its slice.
 
-(defstruct (notice (:constructor make-notice (receiver sender function)) (:copier nil))
+(defstruct (pending-notice (:constructor make-pending-notice (receiver sender function))
+                           (:copier nil))
   "A call of FUNCTION for which the task SENDER waits until the task RECEIVER is at rest."
   (receiver nil :type task :read-only t)
   (sender nil :type task :read-only t)
   (function nil :type function :read-only t))
 
-(defmethod awaited-text ((notice notice))
-  (format nil "task ~D to be at rest" (task-serial (notice-receiver notice))))
+(defmethod awaited-text ((notice pending-notice))
+  (format nil "task ~D to be at rest" (task-serial (pending-notice-receiver notice))))
 
 (defun at-rest-p (task runner)
   (case (task-state task)
     (:running nil)
     (:ready (or (slice-spent-p task runner) (blocked-p task)))
-    (t (not (notice-p (task-awaiting task))))))
+    (t (not (pending-notice-p (task-awaiting task))))))
 
 (defun notify-at-rest (receiver function)
   "Call FUNCTION, which notifies the task RECEIVER, when RECEIVER is at rest. If RECEIVER is at rest
@@ -35,16 +36,16 @@ the running task wait until then."
                (at-rest-p receiver runner))
            (funcall function))
           (t (deliver-notices (remove sender (runner-notices runner)
-                                      :key #'notice-receiver :test-not #'eq)
+                                      :key #'pending-notice-receiver :test-not #'eq)
                               runner)
              (setf (runner-notices runner)
                    (append (runner-notices runner)
-                           (list (make-notice receiver sender function)))
-                   (runner-mask runner) (logior +interrupt+ (runner-mask runner)))))))
+                           (list (make-pending-notice receiver sender function)))
+                   (runner-mask runner) (logior +interrupt-bit+ (runner-mask runner)))))))
 
 (defun wait-for-delivery (task frame value)
   "If TASK must deliver a notice before it goes on with FRAME and VALUE, let it wait. True if so."
-  (let ((notice (find task (runner-notices (task-runner task)) :key #'notice-sender)))
+  (let ((notice (find task (runner-notices (task-runner task)) :key #'pending-notice-sender)))
     (when notice
       (park task notice)
       (setf (task-frame task) frame
@@ -52,8 +53,8 @@ the running task wait until then."
       t)))
 
 (defun deliver-notice (notice)
-  (let ((sender (notice-sender notice)))
-    (call-user-code (notice-function notice) "what a plan is told")
+  (let ((sender (pending-notice-sender notice)))
+    (call-user-code (pending-notice-function notice) "what a plan is told")
     (when (eq notice (task-awaiting sender))
       (wake sender (task-value sender)))))
 
@@ -65,7 +66,8 @@ the running task wait until then."
     t))
 
 (defun deliver-due-notices (runner)
-  (deliver-notices (remove-if-not (lambda (notice) (at-rest-p (notice-receiver notice) runner))
+  (deliver-notices (remove-if-not (lambda (notice)
+                                    (at-rest-p (pending-notice-receiver notice) runner))
                                   (runner-notices runner))
                    runner))
 
@@ -78,7 +80,7 @@ the running task wait until then."
       (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0)
                    " s without a pause: " (form-text form) " in " (task-label task)))))
 
-(defun time-now (runner)
+(defun clock-seconds (runner)
   "Return the time on RUNNER's clock, in seconds, or NIL without a clock."
   (let ((clock (runner-clock runner)))
     (and clock (funcall clock))))
@@ -87,7 +89,7 @@ the running task wait until then."
   (let ((runner (task-runner task)))
     (setf (runner-looked-at runner) nil)
     (multiple-value-prog1 (funcall (node-step node) node task frame value)
-      (let ((seconds (- (or (time-now runner) start) start)))
+      (let ((seconds (- (or (clock-seconds runner) start) start)))
         (when (and (> seconds (runner-slow runner)) (not (runner-looked-at runner)))
           (warn-of-slow-step task frame seconds))))))
 
@@ -100,7 +102,7 @@ the running task wait until then."
         (retry ()
           :test (lambda (condition)
                   (declare (ignore condition))
-                  (not *leaf-offers-restarts-p*))
+                  (not *inside-leaf-restarts-p*))
           :report (lambda (stream)
                     (format stream "Do ~A again."
                             (form-text (current-form (frame-node frame) frame))))
@@ -112,7 +114,7 @@ the running task wait until then."
   (let* ((runner (task-runner task))
          (stepper (runner-stepper runner)))
     (flet ((take ()
-             (let ((start (time-now runner)))
+             (let ((start (clock-seconds runner)))
                (if start
                    (timed-step start node task frame value)
                    (funcall (node-step node) node task frame value)))))
@@ -139,7 +141,7 @@ the running task wait until then."
 FRAME and VALUE come from the last step. Return the frame and value for RUN-STEPS to continue."
   (when (runner-ends-requested (task-runner task)) (end-requested-tasks (task-runner task)))
   (let* ((runner (task-runner task))
-         (mask (logandc2 (runner-mask runner) +interrupt+))
+         (mask (logandc2 (runner-mask runner) +interrupt-bit+))
          (preempted (>= mask (ash 2 (task-level task))))
          (spent (>= (runner-steps runner) (runner-pause runner)))
          (kept (and (plusp (runner-blocks runner)) (blocked-p task))))
@@ -157,7 +159,7 @@ FRAME and VALUE come from the last step. Return the frame and value for RUN-STEP
   "Run TASK from FRAME with VALUE until it waits, yields or ends."
   (declare #.*hot* (type task task))    ; 15 ns a step beyond what the step does
   (let* ((runner (task-runner task))
-         (watched (or (time-now runner) (runner-stepper runner) *leaves-offer-restarts*))
+         (watched (or (clock-seconds runner) (runner-stepper runner) *leaves-offer-restarts*))
          (higher (ash 2 (task-level task))))
     (declare (type plan-runner runner))
     (loop

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(tasks-awaited stuck-wait-text report-wait-cycle preemptors all-preemptors report-deadlock
-          warn-of-outside-waits +no-fluent+ wait-forever warn-of-awaited-value waiting-parts
+          warn-of-outside-waits +no-fluent+ wait-forever warn-of-dubious-condition waiting-parts
           waiting-plans-text text-of-waits advice-on-endless-waits endless-advice fluents-awaited))
 
 ;;; A task is stuck if what it waits for can only come from stuck tasks. A task with parts is stuck
@@ -64,7 +64,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
            (stuck-wait-text (task-awaiting task))
            (task-awaits task))))
 
-(defun stuck-text (task)
+(defun stuck-task-text (task)
   (let ((awaiting (task-awaiting task)))
     (if (and awaiting (tasks-awaited awaiting))
         (format nil "~A waits for ~A" (task-label task) (stuck-wait-text awaiting))
@@ -75,7 +75,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
 (defun warn-of-wait-cycle (tasks)
   "Queue a warning that TASKS wait for each other. A task around TASKS may still end one of TASKS."
   (queue-notable-warning "Deadlock at tick " (runner-tick (task-runner (first tasks))) ": "
-                         (format nil "~{~A~^; ~}" (mapcar #'stuck-text tasks))
+                         (format nil "~{~A~^; ~}" (mapcar #'stuck-task-text tasks))
                          ". These tasks can go on only if one of them is ended, for example by a "
                          "deadline."))
 
@@ -178,7 +178,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (loop for task in tasks
         for subject = (traced-subject (task-awaiting task))
         for tick = (and (fluent-p subject)
-                        (last-pulse (runner-client (task-runner task)) task subject))
+                        (last-pulse-tick (runner-client (task-runner task)) task subject))
         when tick
           return (format nil "~A was pulsed at tick ~D, before this wait began; only a later ~
                               pulse can end the wait. To wait for several fluents, write (par ~
@@ -241,7 +241,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (park task +no-fluent+)
   (warn-of-dubious-wait task (no-fluent-advice task)))
 
-(defun warn-of-awaited-value (task value)
+(defun warn-of-dubious-condition (task value)
   "Warn once for each form if VALUE, which TASK waits for, is probably not meant as a condition."
   (multiple-value-bind (kind remedy)
       (typecase value

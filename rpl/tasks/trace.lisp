@@ -125,7 +125,7 @@ each (chunk fill), newest first."
   (fill 0 :type (unsigned-byte 32))
   (full '() :type list))
 (declaim-final chronicle)
-(define-shared trace-entry issue)
+(define-shared-types trace-entry issue)
 
 ;; What has been noted is not copied: it is never altered.
 (defmethod copy-plan-value ((trace chronicle) fork)

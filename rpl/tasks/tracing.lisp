@@ -37,7 +37,7 @@ TRACE-ENTRY; without a trace, they are not evaluated."
                      subject value)))
 
 (defun trace-changes (runner)
-  (setf (runner-wrapper runner) #'keep-current-asker
+  (setf (runner-wrapper runner) #'entry-with-current-asker
         (runner-on-change runner)
         (lambda (kind fluent value) (trace-running-task runner kind fluent value))))
 
@@ -59,7 +59,7 @@ TRACE-ENTRY; without a trace, they are not evaluated."
 
 ;;; What is posted.
 
-(defun keep-current-asker (entry)
+(defun entry-with-current-asker (entry)
   "Return a function that applies the posted ENTRY on behalf of the current asker."
   (let ((asker *asker*))
     (lambda ()

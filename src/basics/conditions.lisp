@@ -246,7 +246,7 @@ If TEXT is NIL, let EXIT exit again."
         unless (or (member key known) (eq key :allow-other-keys))
           do (reject-name (format nil "keyword of ~(~A~)" operator) key known)))
 
-(defun warn-of-keywords (operator known options)
+(defun warn-unknown-keywords (operator known options)
   "Warn if OPTIONS for OPERATOR have an unknown keyword, or a number in place of a keyword."
   (loop for (key) on options by #'cddr
         when (and (keywordp key) (not (member key known)) (not (eq key :allow-other-keys)))
@@ -281,7 +281,7 @@ compiler warns of a call with an unknown keyword."
            (check-keywords ',name ',known ,options)
            ,@forms)
          (define-compiler-macro ,name (&whole form &rest arguments)
-           (warn-of-keywords ',name ',known (nthcdr ,count arguments))
+           (warn-unknown-keywords ',name ',known (nthcdr ,count arguments))
            form)
          (show-lambda-list ',name ',lambda-list #',name)
          ',name))))

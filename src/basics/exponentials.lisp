@@ -41,7 +41,7 @@
                        (* x x (polynomial x 1/2 1/6 1/24 1/120 1/720))))))
     (scale-by-power (+ power (* power rise)) (ash steps -7))))
 
-(define-cell-function put-exponential (number)
+(define-unboxed-function put-exponential (number)
   (cond ((> number 709.79d0) (signal-overflow number))
         ((< number -745.2d0) 0d0)
         (t (exponential-of-parts number 0d0))))
@@ -75,8 +75,8 @@ first with 42 binary places.")
               (+ (* exponent +log-2-1+) (aref +logarithms+ (+ row 1)))
               (+ (* exponent +log-2-2+) (aref +logarithms+ (+ row 2)))))))
 
-(declaim (inline logarithm-rest))
-(defun logarithm-rest (r square)
+(declaim (inline logarithm-series-tail))
+(defun logarithm-series-tail (r square)
   "Return log (1 + R) - R + R^2 / 2."
   (declare (type double-float r square))
   (* r square (+ (polynomial r 1/3 -1/4)
@@ -91,7 +91,7 @@ first with 42 binary places.")
     (with-sum-parts (high low) ((+ base r))
       (let ((square (* r r)))
         (+ high (+ (+ low (+ base-low r-low))
-                   (- (logarithm-rest r square) (* 0.5d0 square))))))))
+                   (- (logarithm-series-tail r square) (* 0.5d0 square))))))))
 
 (declaim (ftype (function (t t t) nil) reject-base))
 (defun reject-base (operator name number)
@@ -100,7 +100,7 @@ first with 42 binary places.")
 (defmacro finite-above-zero-p (number)
   `(and (< 0d0 ,number) (<= ,number most-positive-double-float)))
 
-(define-cell-function put-logarithm (number)
+(define-unboxed-function put-logarithm (number)
   (if (finite-above-zero-p number)
       (%logarithm number)
       (reject-base 'logarithm 'number number)))
@@ -117,7 +117,7 @@ first with 42 binary places.")
         (with-sum-parts (higher lower) ((- high (* 0.5d0 r-head r-head)))
           (with-sum-parts (highest lowest)
               ((+ higher (+ (+ low lower base-low (- r-low (* r r-low)))
-                            (- (logarithm-rest r (* r r))
+                            (- (logarithm-series-tail r (* r r))
                                (* 0.5d0 (- r r-head) (+ r r-head))))))
             (values highest lowest)))))))
 
@@ -133,7 +133,7 @@ first with 42 binary places.")
             (t (exponential-of-parts
                 product (+ (product-error exponent high product) (* exponent low))))))))
 
-(define-cell-function put-power (base exponent)
+(define-unboxed-function put-power (base exponent)
   (cond ((zerop exponent) 1d0)
         ((finite-above-zero-p base) (positive-power base exponent))
         ((and (zerop base) (plusp exponent)) 0d0)
@@ -148,14 +148,14 @@ first with 42 binary places.")
   "Return e to the power NUMBER, with the same bits on every machine (CL:EXP differs). Signals
 WRONG-ARGUMENT unless NUMBER is real, and FLOATING-POINT-OVERFLOW if it is above 709.78."
   (check-number exponential number)
-  (call-cell-function put-exponential (double number)))
+  (call-unboxed-function put-exponential (double number)))
 
 (addition logarithm)
 (defun logarithm (number)
   "Return the natural logarithm of NUMBER, with the same bits on every machine; CL:LOG differs
 between machines. Signals WRONG-ARGUMENT unless NUMBER is above 0."
   (check-number logarithm number)
-  (call-cell-function put-logarithm (double number)))
+  (call-unboxed-function put-logarithm (double number)))
 
 (defun power (base exponent)
   "Return BASE to the power EXPONENT as a double-float, with the same bits on every machine; CL:EXPT
@@ -163,4 +163,4 @@ differs between machines. Signals FLOATING-POINT-OVERFLOW. Signals WRONG-ARGUMEN
 negative, or if BASE is 0 and EXPONENT is negative."
   (check-number power base)
   (check-number power exponent)
-  (call-cell-function put-power (double base) (double exponent)))
+  (call-unboxed-function put-power (double base) (double exponent)))

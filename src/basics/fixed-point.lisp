@@ -129,7 +129,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 ;;; A full call boxes its double-floats. So inline functions pass them in a vector on the stack. The
 ;;; last cell is for the result: a result in the cell of an argument takes 5 ns more.
 
-(defmacro call-cell-function (function &rest numbers)
+(defmacro call-unboxed-function (function &rest numbers)
   "Call FUNCTION with a vector of NUMBERS and a last cell for the result. Return the result."
   (with-gensyms (cells)
     (let ((count (length numbers)))
@@ -139,7 +139,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
          (,function ,cells)
          (aref ,cells ,count)))))
 
-(defmacro define-cell-function (name (&rest arguments) &body body)
+(defmacro define-unboxed-function (name (&rest arguments) &body body)
   "Define the function NAME. It takes a vector of ARGUMENTS and a cell to store BODY's value in."
   (let ((count (length arguments)))
     `(defun ,name (cells)
@@ -154,7 +154,7 @@ NEXT, called with the previous term and K = 1, 2, 3 ..."
 
 (defmacro check-number (operator place)
   "Signal WRONG-ARGUMENT unless PLACE is a double-float or a real number that can be converted to a
-double-float. Functions defined by DEFINE-CELL-FUNCTION reject infinities themselves, because an
+double-float. Functions defined by DEFINE-UNBOXED-FUNCTION reject infinities themselves, because an
 inline check would box the double-float."
   `(check-argument ,operator ,place (or (typep ,place 'double-float) (finite-p ,place))
                    +number-text+))

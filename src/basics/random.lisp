@@ -4,7 +4,7 @@
 
 (export '(*random-state-variable* seeded-random-state reseed-random-state
           call-with-own-random-state with-random-state random-state-numbers random-state-numbers-p
-          random-state-of-numbers take-random-snapshot restore-random-snapshot unique-number
+          random-state-of-numbers take-random-snapshot restore-random-snapshot random-identifier
           tick-dice make-tick-dice begin-tick-dice *tick-dice* with-users-random-state))
 
 ;;; CL:RANDOM must not depend on what this Lisp has done before. Programs (continuations, plans and
@@ -81,7 +81,7 @@
   "Run BODY with the random state STATE for CL:RANDOM. If STATE is NIL, use the current state."
   `(let ((*random-state* (or ,state *random-state*))) ,@body))
 
-(defun unique-number ()
+(defun random-identifier ()
   "Return a random number of 64 bits that is unlikely to be the same in two processes."
   (random (expt 2 64) (make-random-state t)))
 

@@ -2,9 +2,10 @@
 
 (in-package :ars-magna.basics)
 
-(export '(document-restarts all-restarts restart-documentation public addition settable
-          settable-p addition-p addition-text public-symbols *loading-simulator-p* define-record
-          reader-text
+(export '(document-restarts restart-name-list restart-documentation public addition settable
+          settable-p addition-p addition-docstring public-symbols *loading-simulator-p*
+          define-record
+          reader-docstring
           reader-export-forms))
 
 ;;; A mark precedes the definition of a name: PUBLIC for the manual's names, ADDITION for ours. The
@@ -83,7 +84,7 @@ only functions that the journal records may change the state of a run."
   (let ((mark (find-public-mark symbol)))
     (and mark (mark-addition-p mark))))
 
-(defun addition-text (text)
+(defun addition-docstring (text)
   "Return TEXT, the documentation of an addition to the manual. If TEXT lacks the sentence \"An
 addition to the manual.\", add it as the last line, and remove a reference to chapter C."
   (let ((sentence "An addition to the manual."))
@@ -101,7 +102,7 @@ addition to the manual.\", add it as the last line, and remove a reference to ch
         do (setf *documented-restarts* (append (remove name *documented-restarts* :key #'first)
                                     (list (list name (one-line text)))))))
 
-(defun all-restarts ()
+(defun restart-name-list ()
   "Return a list of the names of the documented restarts."
   (mapcar #'first *documented-restarts*))
 
@@ -118,13 +119,13 @@ addition to the manual.\", add it as the last line, and remove a reference to ch
   (loop for (function . text) in functions-and-texts
         do (setf (documentation function 'function) text)))
 
-(defun reader-text (slot text)
+(defun reader-docstring (slot text)
   "Return documentation for the reader of the slot named SLOT. TEXT describes the slot's contents."
   (if (ends-with-subseq "-P" (symbol-name slot))
       (format nil "True if ~A." text)
       (format nil "Return ~A." text)))
 
-(defun function-texts (name documentation predicate constructors)
+(defun function-docstrings (name documentation predicate constructors)
   "Return an alist (symbol . text) for PREDICATE and CONSTRUCTORS, (symbol [arguments] [text])."
   (flet ((texts (beginning functions)
            (loop for (function . rest) in functions
@@ -169,17 +170,17 @@ of the slot's name, returns the reader's name."
   (destructuring-bind (name default type &rest rest) slot
     `(,name ,default :type ,type ,@(unless (member :writable rest) '(:read-only t)))))
 
-(defun record-texts (name options documentation slots)
+(defun docstrings-of-record (name options documentation slots)
   (append (loop for slot in slots
                 for text = (slot-text slot)
                 when text
                   collect (cons (symbolicate (conc-name name options) (first slot))
-                                (reader-text (first slot) text)))
-          (function-texts name documentation
-                          (first (values-of-option :predicate options
-                                                   (list (symbolicate name "-P"))))
-                          (values-of-option :constructor options
-                                            (list (symbolicate "MAKE-" name))))))
+                                (reader-docstring (first slot) text)))
+          (function-docstrings name documentation
+                               (first (values-of-option :predicate options
+                                                        (list (symbolicate name "-P"))))
+                               (values-of-option :constructor options
+                                                 (list (symbolicate "MAKE-" name))))))
 
 (defmacro define-record (name-and-options documentation &body slots)
   "Define a structure and document its slots. NAME-AND-OPTIONS is as in DEFSTRUCT; documentation may
@@ -198,5 +199,5 @@ Return the name. Signals MALFORMED-DEFINITION."
          ,documentation
          ,@(mapcar #'slot-definition slots))
        ,@(reader-export-forms slots (lambda (slot) (symbolicate (conc-name name options) slot)))
-       (set-documentations ',(record-texts name options documentation slots))
+       (set-documentations ',(docstrings-of-record name options documentation slots))
        ',name)))

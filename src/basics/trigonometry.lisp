@@ -95,8 +95,8 @@ it, and two numbers whose sum is the rest. OPERATOR rejects infinities."
            (parts (double-parts (* sign (fixed-product rest (ash (fixed-pi) -1))) 53)))
       (values (* sign quarters) (first parts) (second parts)))))
 
-(declaim (inline reduce-near-right-angle reduce-angle))
-(defun reduce-near-right-angle (angle count)
+(declaim (inline subtract-right-angles reduce-angle))
+(defun subtract-right-angles (angle count)
   "Return two numbers whose sum is ANGLE minus COUNT right angles, which nearly equal ANGLE."
   (declare (type double-float angle count))
   (with-difference-parts (high low) ((- angle (* count +right-a+)) (* count +right-b+))
@@ -116,7 +116,7 @@ sum is the rest. Error messages name OPERATOR."
                   (high (- most more)))
              (multiple-value-bind (high low)
                  (if (< (abs high) 0.001d0)
-                     (reduce-near-right-angle angle count)
+                     (subtract-right-angles angle count)
                      (with-sum-parts (higher lower)
                          ((+ high (- (- (- most high) more) (* count +right-3+))))
                        (values higher lower)))
@@ -130,12 +130,12 @@ sum is the rest. Error messages name OPERATOR."
   (let ((value (if (logtest 1 quarters) (cosine-near-zero high low) (sine-near-zero high low))))
     (if (logtest 2 quarters) (- value) value)))
 
-(define-cell-function put-sine (angle)
+(define-unboxed-function put-sine (angle)
   (multiple-value-bind (quarters high low) (reduce-angle 'sine angle)
     (declare (type (signed-byte 30) quarters) (type double-float high low))
     (sine-of-right-angles quarters high low)))
 
-(define-cell-function put-cosine (angle)
+(define-unboxed-function put-cosine (angle)
   (multiple-value-bind (quarters high low) (reduce-angle 'cosine angle)
     (declare (type (signed-byte 30) quarters) (type double-float high low))
     (sine-of-right-angles (1+ quarters) high low)))
@@ -200,7 +200,7 @@ coefficients 1 to 6 of its Taylor series.")
               (+ higher (+ lower (+ base-low (* sign low))))))
           (+ high low)))))
 
-(define-cell-function put-arctangent (y x)
+(define-unboxed-function put-arctangent (y x)
   (cond ((zerop y) (if (minusp (float-sign x)) (float-sign y +pi-1+) y))
         ((zerop x) (float-sign y +right-angle-1+))
         ((minusp y) (- (upper-arctangent (- y) x)))
@@ -215,14 +215,14 @@ coefficients 1 to 6 of its Taylor series.")
   "Return the sine of ANGLE, in radians: a double-float with the same bits on every machine. (CL:SIN
 differs between machines.) Signals WRONG-ARGUMENT unless ANGLE is a real number."
   (check-number sine angle)
-  (call-cell-function put-sine (double angle)))
+  (call-unboxed-function put-sine (double angle)))
 
 (addition cosine)
 (defun cosine (angle)
   "Return the cosine of ANGLE, in radians, with the same bits on every machine. See SINE."
   (check-number cosine angle)
-  (call-cell-function put-cosine (double angle)))
+  (call-unboxed-function put-cosine (double angle)))
 
 (defun arctangent (y x)
   "Return the angle of (X, Y) from -pi to pi radians. The sign of a 0 matters, as for CL:ATAN."
-  (call-cell-function put-arctangent (double y) (double x)))
+  (call-unboxed-function put-arctangent (double y) (double x)))

@@ -11,11 +11,11 @@
 
 (defconstant +title-height+ 17 "Height of the titles of displays, in pixels.")
 (defconstant +menus-height+ 20 "Height of the bar of menus, in pixels.")
-(defconstant +bar-height+ 26 "Height of the tool bar, in pixels.")
+(defconstant +tool-bar-height+ 26 "Height of the tool bar, in pixels.")
 (defconstant +status-strip-height+ 36 "Height of the status strip, in pixels.")
-(defconstant +prompt-rows+ 2 "The least number of rows of the input line.")
-(defconstant +prompt-height+ 36
-  "Height of the input line when it has +PROMPT-ROWS+ rows, in pixels.")
+(defconstant +least-prompt-rows+ 2 "The least number of rows of the input line.")
+(defconstant +least-prompt-height+ 36
+  "Height of the input line when it has +LEAST-PROMPT-ROWS+ rows, in pixels.")
 (defconstant +splitter-width+ 6 "Thickness of a splitter, in pixels.")
 (defconstant +least-width-for-plan-column+ 1500
   "The least width, in pixels, of a window that shows plans in a separate column.")
@@ -57,7 +57,7 @@ MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit th
 (defun column-sections (preferences width)
   (if (plan-column-p preferences width) (remove 'plan +sections+) +sections+))
 
-(defun usual-details-width (preferences width)
+(defun default-details-width (preferences width)
   "Return the default width of the column of sections in a window WIDTH pixels wide. The column is
 wider if it shows plans, because plans have long lines."
   (if (or (member 'plan (preferences-folded preferences)) (plan-column-p preferences width))
@@ -67,7 +67,7 @@ wider if it shows plans, because plans have long lines."
 (defun details-width (preferences width)
   "Return the width in pixels of the column of sections in a window WIDTH pixels wide."
   (let ((wanted (or (preferences-details-width preferences)
-                    (usual-details-width preferences width))))
+                    (default-details-width preferences width))))
     (clamp (round wanted) 120 (max 120 (- width 160)))))
 
 (defun plan-width (preferences width)
@@ -80,21 +80,21 @@ wider if it shows plans, because plans have long lines."
 
 (defun transcript-height (preferences height)
   (let ((wanted (or (preferences-transcript-height preferences) (clamp (floor height 5) 80 260)))
-        (fixed (+ +menus-height+ +bar-height+ +splitter-width+ +prompt-height+
+        (fixed (+ +menus-height+ +tool-bar-height+ +splitter-width+ +least-prompt-height+
                   +status-strip-height+)))
     (clamp (round wanted) 40 (max 40 (- height fixed 120)))))
 
 ;;; Sections.
 
-(defun share-height (needs height)
+(defun divide-height (needs height)
   "Return lists (section pixels) that divide HEIGHT among the sections of NEEDS, lists (section
 pixels). If HEIGHT is enough, each section gets what it needs, and the plan or the designators get
 the rest. Otherwise each gets a fair share."
   (cond ((null needs) '())
-        ((<= (reduce #'+ needs :key #'second) height) (give-rest-to-section needs height))
-        (t (share-height-with-plan needs height))))
+        ((<= (reduce #'+ needs :key #'second) height) (add-unused-height needs height))
+        (t (divide-height-with-plan needs height))))
 
-(defun share-height-with-plan (needs height)
+(defun divide-height-with-plan (needs height)
   "Divide HEIGHT, which is less than NEEDS. The section of plans gets what it needs, up to half of
 HEIGHT, or more if the others leave more. The others get fair shares."
   (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
@@ -102,26 +102,26 @@ HEIGHT, or more if the others leave more. The others get fair shares."
         (let ((share (min (second plan)
                           (max (floor height 2)
                                (- height (reduce #'+ others :key #'second))))))
-          (cons (list 'plan share) (share-height others (- height share))))
-        (share-height-fairly needs height))))
+          (cons (list 'plan share) (divide-height others (- height share))))
+        (divide-height-fairly needs height))))
 
 (defun height-of-whole-lines (height)
   "Return the height of the whole lines that fit in HEIGHT pixels, or of one line if none fits."
   (+ +section-top-margin+
      (* +line-height+ (max 1 (floor (- height +section-top-margin+) +line-height+)))))
 
-(defun share-height-fairly (needs height)
+(defun divide-height-fairly (needs height)
   "Divide HEIGHT, which is not enough for NEEDS. Sections that need less than an equal share get
 what they need. The other sections get equally many whole lines."
   (let* ((fair (floor height (max 1 (length needs))))
          (small (remove-if (lambda (need) (> (second need) fair)) needs))
          (large (remove-if (lambda (need) (member need small)) needs)))
     (if (null small)
-        (share-lines needs fair height)
+        (divide-lines needs fair height)
         (append small
-                (share-height-fairly large (- height (reduce #'+ small :key #'second)))))))
+                (divide-height-fairly large (- height (reduce #'+ small :key #'second)))))))
 
-(defun share-lines (needs fair height)
+(defun divide-lines (needs fair height)
   "Divide HEIGHT among NEEDS. Each section gets as many whole lines as FAIR pixels hold. Remaining
 lines go to the first sections, one each, and remaining pixels to the last."
   (let* ((share (min (height-of-whole-lines fair) (max 0 fair)))
@@ -133,7 +133,7 @@ lines go to the first sections, one each, and remaining pixels to the last."
           do (decf rest extra)
           collect (list section (+ share extra)))))
 
-(defun give-rest-to-section (shares height)
+(defun add-unused-height (shares height)
   "Return SHARES, lists (section pixels), with the unused pixels of HEIGHT added to one section."
   (let ((rest (- height (reduce #'+ shares :key #'second)))
         (receiver (or (find 'plan shares :key #'first) (find 'designators shares :key #'first)
@@ -150,10 +150,10 @@ lines go to the first sections, one each, and remaining pixels to the last."
   "Return the places of SECTIONS in a column. NEEDS returns the height of a section in pixels."
   (let* ((open (set-difference sections folded))
          (room (- height (* +title-height+ (length sections))))
-         (shares (share-height (loop for section in sections
-                                     when (member section open)
-                                       collect (list section (funcall needs section)))
-                               room)))
+         (shares (divide-height (loop for section in sections
+                                      when (member section open)
+                                        collect (list section (funcall needs section)))
+                                room)))
     (loop for section in sections
           for own = (or (second (find section shares :key #'first)) 0)
           append (section-and-title-places section left top width own)
@@ -194,24 +194,24 @@ pixels high. The column of sections is DOWN pixels high."
 (defun prompt-height (rows transcript)
   "Return the height in pixels of an input line with ROWS rows. Additional rows take their height
 from the transcript, TRANSCRIPT pixels high, but the transcript keeps at least 40 pixels."
-  (clamp (+ +prompt-height+ (* +line-height+ (- rows +prompt-rows+)))
-         +prompt-height+
-         (max +prompt-height+ (+ +prompt-height+ (- transcript +title-height+ 40)))))
+  (clamp (+ +least-prompt-height+ (* +line-height+ (- rows +least-prompt-rows+)))
+         +least-prompt-height+
+         (max +least-prompt-height+ (+ +least-prompt-height+ (- transcript +title-height+ 40)))))
 
-(defun compute-places (preferences needs width height &optional (rows +prompt-rows+))
+(defun compute-places (preferences needs width height &optional (rows +least-prompt-rows+))
   "Return the places of all parts of a window of WIDTH x HEIGHT pixels with the layout PREFERENCES.
 NEEDS is a function from a section to the height that it needs, in pixels. The input line has ROWS
 rows; additional rows take room from the transcript."
-  (let* ((top (+ +menus-height+ +bar-height+))
+  (let* ((top (+ +menus-height+ +tool-bar-height+))
          (strip (- height +status-strip-height+))
          (transcript (transcript-height preferences height))
          (typed (prompt-height rows transcript))
          (prompt (- strip typed))
-         (splitter (- strip +prompt-height+ transcript +splitter-width+))
+         (splitter (- strip +least-prompt-height+ transcript +splitter-width+))
          (down-p (< height +low-window-height+))
          (column (+ (details-width preferences width) +splitter-width+)))
     (append (list (list 'menus 0 0 width +menus-height+)
-                  (list 'bar 0 +menus-height+ width +bar-height+))
+                  (list 'bar 0 +menus-height+ width +tool-bar-height+))
             (display-places preferences needs width top (- splitter top)
                             (- (if down-p prompt splitter) top))
             (transcript-places (if down-p (- width column) width) splitter prompt)

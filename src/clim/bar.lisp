@@ -29,7 +29,7 @@ and return the label or whether the button is on."
 
 (defun view-follows-robot-p (window) (pane-following-p (pane-named window 'world)))
 
-(defparameter *buttons*
+(defparameter *bar-buttons*
   (list (make-button 'pause-label #\Space 'com-pause-or-resume
                      "Pause the run, or let time pass again"
                      (lambda (window) (paused-until-resume-p (window-simulation window))))
@@ -49,9 +49,9 @@ and return the label or whether the button is on."
   (:default-initargs :background clim:+gray88+)
   (:documentation "The tool bar."))
 
-(defmethod pane-content ((pane bar-pane))
+(defmethod pane-appearance ((pane bar-pane))
   (let ((window (window-of pane)))
-    (loop for button in *buttons*
+    (loop for button in *bar-buttons*
           for label = (button-label button)
           for lit-p = (button-lit-p button)
           collect (list (if (stringp label) label (funcall label window))
@@ -60,11 +60,11 @@ and return the label or whether the button is on."
 (defmethod paint ((pane bar-pane))
   (with-pane-canvas (canvas pane)
     (loop with x = 4
-          for button in *buttons*
-          for (text lit-p) in (pane-content pane)
+          for button in *bar-buttons*
+          for (text lit-p) in (pane-appearance pane)
           for width = (+ 12 (* +character-width+ (max 5 (length text))))
           do (setf x (+ 4 (draw-button canvas button text lit-p x 3 width
-                                       (- +bar-height+ 7)))))))
+                                       (- +tool-bar-height+ 7)))))))
 
 (defmethod handle-click ((pane bar-pane) mouse-button x y)
   (declare (ignore mouse-button))
@@ -96,16 +96,16 @@ and return the label or whether the button is on."
       (format nil "the prompt asks how to continue ~:[~R programs~;a program~]"
               (= count 1) count))))
 
-(defun time-text (window)
+(defun run-status-text (window)
   (format nil "~A  ~A~:[~;; a program waits for your answer~]~@[; ~A~]" (tick-text window)
           (progress-text (watcher-progress (window-watcher window)))
           (line-awaiting-input (window-conversation window))
           (waiting-programs-text window)))
 
 (defun status-strip-lines (window)
-  (list (time-text window) (window-hint window)))
+  (list (run-status-text window) (window-hint window)))
 
-(defmethod pane-content ((pane strip-pane))
+(defmethod pane-appearance ((pane strip-pane))
   (list (status-strip-lines (window-of pane)) (multiple-value-list (pane-size pane))))
 
 (defmethod paint ((pane strip-pane))
@@ -122,4 +122,4 @@ and return the label or whether the button is on."
 (defmethod handle-click ((pane strip-pane) button x y)
   (declare (ignore button x y))
   (let ((window (window-of pane)))
-    (write-in-window window "~A~%" (time-text window))))
+    (write-in-window window "~A~%" (run-status-text window))))

@@ -21,11 +21,11 @@
    (dy :initform 0 :accessor canvas-dy))
   (:documentation "A canvas that paints on a CLIM medium."))
 
-(defvar *inks* (make-hash-table :synchronized t) "A cache of CLIM's colour objects by colour.")
+(defvar *ink-cache* (make-hash-table :synchronized t) "A cache of CLIM's colour objects by colour.")
 
 (defun clim-ink (color)
-  (or (gethash color *inks*)
-      (setf (gethash color *inks*)
+  (or (gethash color *ink-cache*)
+      (setf (gethash color *ink-cache*)
             (flet ((part (position) (/ (ldb (byte 8 position) color) 255)))
               (clim:make-rgb-color (part 16) (part 8) (part 0))))))
 
@@ -85,7 +85,7 @@
                       :filled (and fill-p t) :ink (clim-ink (gcontext-foreground gcontext))
                       :line-thickness (clim-line-thickness canvas gcontext)))
 
-(defun outline-box (x y width height thickness)
+(defun box-for-outline (x y width height thickness)
   "Return the box, as values x, y, width and height, along which an outline of THICKNESS must be
 drawn to stay inside the box X, Y, WIDTH, HEIGHT."
   (let ((inset (/ (1- thickness) 2)))
@@ -97,7 +97,7 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
   (if fill-p
       (paint-arc-in-box canvas gcontext x y width height start extent t)
       (multiple-value-bind (x y width height)
-          (outline-box x y width height (max 1 (gcontext-line-width gcontext)))
+          (box-for-outline x y width height (max 1 (gcontext-line-width gcontext)))
         (paint-arc-in-box canvas gcontext x y width height start extent nil))))
 
 (defun paint-arc-in-box (canvas gcontext x y width height start extent fill-p)
@@ -131,13 +131,13 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
           'vector)
   "CLIM text styles by magnification. For magnification N, letters are N x +CHARACTER-WIDTH+ wide.")
 
-(defun text-uncut-p (canvas y)
+(defun text-fully-visible-p (canvas y)
   (let ((bottom (canvas-bottom canvas)) (y (+ y (canvas-dy canvas))))
     (or (null bottom) (<= 10 y (- bottom 3)))))
 
 (defmethod paint-string ((canvas clim-canvas) gcontext x y string)
   (extend-bounding-box canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
-  (when (text-uncut-p canvas y)
+  (when (text-fully-visible-p canvas y)
     (clim:draw-text* (canvas-medium canvas) string x y
                      :text-style (svref *text-styles* (1- (canvas-magnification canvas)))
                      :ink (clim-ink (gcontext-foreground gcontext)))))

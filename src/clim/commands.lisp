@@ -131,7 +131,7 @@ calls COMMAND. Return 8 if no button calls COMMAND."
         finally (return 8)))
 
 (defun open-popup-below-bar (window rows opener)
-  (open-popup window rows (button-left-edge window opener) (+ +menus-height+ +bar-height+ 2)
+  (open-popup window rows (button-left-edge window opener) (+ +menus-height+ +tool-bar-height+ 2)
               opener))
 
 (define-window-command (com-layers "Layers") (window)

@@ -27,7 +27,7 @@ other windows show all robots of NEW."
                      (list (shown-robot-name window) ars-magna.cli:*prompt-robot*)
                      names))))
 
-(defun switch-window (window new)
+(defun switch-window-to-run (window new)
   "Make WINDOW show the run NEW from now on, if NEW has a robot that no other window shows."
   (let ((name (robot-name-after-switch window new)))
     (when name
@@ -45,9 +45,9 @@ other windows show all robots of NEW."
         (cond ((eq new (watcher-simulation watcher))
                (unless (live-p new) (publish-snapshot watcher new)))
               ((and old (not (eq old new)) (follows-prompt-p window old))
-               (switch-window window new)))))))
+               (switch-window-to-run window new)))))))
 
-(add-listener ars-magna.cli:*whereabouts-hooks* follow-prompt)
+(add-listener ars-magna.cli:*before-line-hooks* follow-prompt)
 
 ;;; A program that has broken asks how to continue: the window shows the state in which it broke.
 

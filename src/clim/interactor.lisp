@@ -69,7 +69,7 @@ above it and its ink. Return NIL if PANE is empty."
                                                    point
                                                    (columns-and-rows pane) 1000)))))
 
-(defmethod pane-content ((pane interactor-pane))
+(defmethod pane-appearance ((pane interactor-pane))
   (list (interactor-contents pane) (focused-p pane)))
 
 ;;; Painting.
@@ -104,7 +104,7 @@ above it and its ink. Return NIL if PANE is empty."
     (:home :home) (:end :end))
   "Lists (name key): the name of a key in CLIM, and its name in the prompt's line editor.")
 
-(defun pressed-with-p (event modifier)
+(defun modifier-pressed-p (event modifier)
   (logtest modifier (clim:event-modifier-state event)))
 
 (defun editor-key-named (name control-p meta-p)
@@ -120,8 +120,8 @@ above it and its ink. Return NIL if PANE is empty."
 
 (defun editor-key-of-event (event)
   (let ((char (clim:keyboard-event-character event))
-        (control-p (pressed-with-p event clim:+control-key+))
-        (meta-p (pressed-with-p event clim:+meta-key+)))
+        (control-p (modifier-pressed-p event clim:+control-key+))
+        (meta-p (modifier-pressed-p event clim:+meta-key+)))
     (cond ((editor-key-named (clim:keyboard-event-key-name event) control-p meta-p))
           ((or (null char) (not (graphic-char-p char))) nil)
           (control-p (and (alpha-char-p char) (prefixed-key "CONTROL" char)))
@@ -147,8 +147,8 @@ above it and its ink. Return NIL if PANE is empty."
   (let* ((name (clim:keyboard-event-key-name event))
          (typed (clim:keyboard-event-character event))
          ;; CLIM reports shift only by the capital letter.
-         (shift-p (or (pressed-with-p event clim:+shift-key+) (and typed (upper-case-p typed))))
-         (control-p (pressed-with-p event clim:+control-key+)))
+         (shift-p (or (modifier-pressed-p event clim:+shift-key+) (and typed (upper-case-p typed))))
+         (control-p (modifier-pressed-p event clim:+control-key+)))
     (flet ((is-p (char) (and typed (char= char (char-downcase typed)))))
       (cond ((and control-p shift-p (is-p #\c)) #'copy-text)
             ((or (and control-p shift-p (is-p #\v)) (and shift-p (eq name :insert)))

@@ -37,7 +37,7 @@ NIL."
 
 (defun handle-key (window key-name character)
   "Handle the key KEY-NAME, with CHARACTER or NIL, in WINDOW. Return true if the key has an effect."
-  (let ((button (and character (find character *buttons* :key #'button-key)))
+  (let ((button (and character (find character *bar-buttons* :key #'button-key)))
         (shown (shown-input-line (window-conversation window))))
     (multiple-value-bind (dx dy) (arrow-key-offset key-name)
       (cond ((handle-key-in-popup window key-name) t)
@@ -60,7 +60,7 @@ NIL."
              t)))))
 
 (defun key-modified-p (event)
-  (or (pressed-with-p event clim:+control-key+) (pressed-with-p event clim:+meta-key+)))
+  (or (modifier-pressed-p event clim:+control-key+) (modifier-pressed-p event clim:+meta-key+)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:key-press-event))
   (let ((window (window-of pane)))

@@ -48,7 +48,7 @@
 ;;; switches should not move from under the mouse during a run. It shrinks when the user changes the
 ;;; arrangement or what is shown, or when another display needs the room.
 
-(defun current-needs (layout)
+(defun current-height-needs (layout)
   "Return lists (section pixels): the height that each open section in the column of LAYOUT needs."
   (let* ((window (clim:pane-frame layout)) (preferences (pane-preferences layout))
          (width (pane-size layout)) (column (details-width preferences width)))
@@ -71,7 +71,7 @@
   (let ((interactor (pane-named (clim:pane-frame layout) 'interactor)))
     (if (and interactor (window-conversation (clim:pane-frame layout)))
         (needed-rows interactor)
-        +prompt-rows+)))
+        +least-prompt-rows+)))
 
 (defun needs-met-p (places needs)
   "True if PLACES give each section at least its height in NEEDS, lists (section pixels). The
@@ -80,10 +80,10 @@ section of plans is ignored, because it takes any height."
         always (or (eq section 'plan)
                    (<= pixels (fifth (assoc section places))))))
 
-(defun greatest-needs-so-far (layout)
+(defun greatest-height-needs (layout)
   "Return lists (section pixels): the greatest height that each section of LAYOUT has needed so far.
 If only the heights needed now fit, return those."
-  (let* ((now (current-needs layout))
+  (let* ((now (current-height-needs layout))
          (before (needed-height-function (pane-needed layout)))
          (most (loop for (section pixels) in now
                      collect (list section (max pixels (funcall before section))))))
@@ -98,7 +98,7 @@ If only the heights needed now fit, return those."
          (shown (list (window-simulation window) (shown-robot-name window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
       (setf (pane-needed layout) '())))
-  (compute-layout-places layout (setf (pane-needed layout) (greatest-needs-so-far layout))))
+  (compute-layout-places layout (setf (pane-needed layout) (greatest-height-needs layout))))
 
 (defun place-parts (layout places)
   (let ((window (clim:pane-frame layout)))
@@ -142,7 +142,7 @@ least height of the designators.")
     10000)
   (:method ((pane detail-pane) section width)
     (if (window-robot (window-of pane))
-        (max (detail-height pane (max 1 (- width +scroll-bar-width+)))
+        (max (cached-content-height pane (max 1 (- width +scroll-bar-width+)))
              (if (eq section 'designators) (initial-height section) 0))
         (initial-height section))))
 
@@ -203,9 +203,9 @@ least height of the designators.")
     (declare (ignore x))
     (setf (preferences-transcript-height preferences)
           (max 40 (- (nth-value 1 (pane-size layout))
-                     y +splitter-width+ +prompt-height+ +status-strip-height+)))))
+                     y +splitter-width+ +least-prompt-height+ +status-strip-height+)))))
 
-(defmethod pane-content ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
+(defmethod pane-appearance ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
 
 (defmethod paint ((pane splitter-pane)) (clear-pane pane))
 
@@ -249,7 +249,7 @@ and the robot, if the run has several robots."
     (plan "Plan")
     (t (display-title (pane-display (pane-named window section))))))
 
-(defmethod pane-content ((pane title-pane))
+(defmethod pane-appearance ((pane title-pane))
   (let ((window (window-of pane)) (section (pane-section pane)))
     (list (section-title window section) (section-folded-p window section)
           (multiple-value-list (pane-size pane)))))

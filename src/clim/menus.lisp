@@ -102,7 +102,7 @@
   (:default-initargs :background clim:+gray75+)
   (:documentation "The menu bar."))
 
-(defmethod pane-content ((pane menu-pane))
+(defmethod pane-appearance ((pane menu-pane))
   (list (multiple-value-list (pane-size pane)) (popup-opener (window-of pane))))
 
 (defun draw-menu-title (canvas menu x open-p)

@@ -93,7 +93,7 @@ entry for each camera that does not track it."
                 collect (list (format nil "Grasp it with hand ~D" index)
                               (format nil "hand-grasp ~D ~D" index camera)))))
 
-(defun tracked-offers (numbers window &key held-p)
+(defun tracked-thing-offers (numbers window &key held-p)
   "Return the menu entries for the cameras that track a thing. NUMBERS are those of its designators.
 If the robot itself holds the thing (HELD-P), leave out approaching and grasping."
   (loop for camera in (cameras-tracking numbers window)
@@ -110,7 +110,7 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
                   (same-subject-p image (hand-image-contents hand))))
            (robot-image-hands (window-robot window))))
 
-(defun insert-offers (hands bins title)
+(defun insertion-offers (hands bins title)
   "Return entries to put HANDS into open BINS. TITLE is a format string for the two numbers."
   (loop for hand in hands
         append (loop for bin in bins
@@ -120,26 +120,26 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
                                      (format nil "hand-insert-bin ~D ~D" (hand-image-index hand)
                                              (bin-image-index bin))))))
 
-(defun letting-go-offers (hand window)
+(defun release-offers (hand window)
   (let ((index (hand-image-index hand)))
     (append (list (list (format nil "Let go of it with hand ~D" index)
                         (format nil "hand-ungrasp ~D" index)))
             (when (hand-image-location hand)
               (list (list (format nil "Take hand ~D, which holds it, out of its container" index)
                           (format nil "hand-remove ~D" index))))
-            (insert-offers (list hand) (robot-image-bins (window-robot window))
-                           "Put hand ~D, which holds it, into storage bin ~D"))))
+            (insertion-offers (list hand) (robot-image-bins (window-robot window))
+                              "Put hand ~D, which holds it, into storage bin ~D"))))
 
-(defun held-offers (image window)
+(defun held-thing-offers (image window)
   "Return the menu entries for the thing of IMAGE if WINDOW's robot holds it or has it in a bin."
   (let* ((robot (window-robot window))
          (hand (hand-image-holding image window))
          (bin (find-if (lambda (bin) (member image (bin-image-contents bin) :test #'same-subject-p))
                        (robot-image-bins robot))))
-    (cond (hand (letting-go-offers hand window))
+    (cond (hand (release-offers hand window))
           (bin (append (offers bin window)
-                       (insert-offers (remove-if #'hand-image-contents (robot-image-hands robot))
-                                      (list bin) "Put hand ~D into storage bin ~D"))))))
+                       (insertion-offers (remove-if #'hand-image-contents (robot-image-hands robot))
+                                         (list bin) "Put hand ~D into storage bin ~D"))))))
 
 (defun on-floor-p (image window)
   (find (thing-image-thing image) (snapshot-things (window-snapshot window))
@@ -149,10 +149,10 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
   (let ((numbers (designator-numbers-of image window)))
     (append (when (on-floor-p image window)
               (list (go-there-offer (thing-image-x image) (thing-image-y image))))
-            (held-offers image window)
+            (held-thing-offers image window)
             (search-offers image window)
             (start-tracking-offers numbers window)
-            (tracked-offers numbers window :held-p (hand-image-holding image window))
+            (tracked-thing-offers numbers window :held-p (hand-image-holding image window))
             (inspection-offers (find-thing-form-text image)))))
 
 ;;; Designators and parts.
@@ -161,9 +161,9 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
   (let ((numbers (list (designator-image-number image)))
         (thing (designator-image-denotation image)))
     (append (start-tracking-offers numbers window)
-            (tracked-offers numbers window
-                            :held-p (and (typep thing 'thing-image)
-                                          (hand-image-holding thing window))))))
+            (tracked-thing-offers numbers window
+                                  :held-p (and (typep thing 'thing-image)
+                                                (hand-image-holding thing window))))))
 
 (defmethod offers ((image camera-image) window)
   (declare (ignore window))

@@ -198,7 +198,7 @@ has chosen another robot of the run, WINDOW shows that robot. Only the prompt's 
       (when reason (leave-finished-run window reason)))
     (let ((simulation (window-simulation window)) (watcher (window-watcher window)))
       (cond ((not (eq simulation *simulation*))
-             (ars-magna.cli:go-to-run simulation)
+             (ars-magna.cli:make-run-current simulation)
              (setf ars-magna.cli:*prompt-robot* (watcher-robot watcher)))
             ((not (eq (watcher-robot watcher) ars-magna.cli:*prompt-robot*))
              (show-robot-called window ars-magna.cli:*prompt-robot* simulation)
@@ -319,7 +319,7 @@ or fork, one of a finished run, a new one. Signals MISUSE if there is no X serve
         do (join-thread (window-thread window))))
 
 (setf *display-opener* #'open-window
-      *displays-waiter* #'join-window-threads)
+      *window-close-waiter* #'join-window-threads)
 
 (defun watch-rewound-run (old new)
   (dolist (window (open-window-list))

@@ -67,7 +67,7 @@ screen. WIDTH and HEIGHT are in screen pixels."
 (defgeneric paint (pane)
   (:documentation "Paint the whole PANE."))
 
-(defgeneric pane-content (pane)
+(defgeneric pane-appearance (pane)
   (:documentation "Return an object that represents the looks of PANE. It is EQUAL to the object
 returned before if PANE would look the same."))
 
@@ -117,10 +117,10 @@ would be cut off. Record in PANE what was painted where."
 
 (defun repaint (pane)
   (when (pane-shown-p pane)
-    (setf (pane-painted pane) (pane-content pane))
+    (setf (pane-painted pane) (pane-appearance pane))
     (call-buffered (lambda ()
                      (paint pane)
-                     (when (limit-offset pane) (paint pane))
+                     (when (limit-scroll-offset pane) (paint pane))
                      (paint-selection pane)
                      (paint-scroll-bar pane))
                    pane)
@@ -128,7 +128,7 @@ would be cut off. Record in PANE what was painted where."
     (update-description pane)))
 
 (defun repaint-if-changed (pane)
-  (when (and (pane-shown-p pane) (not (equal (pane-painted pane) (pane-content pane))))
+  (when (and (pane-shown-p pane) (not (equal (pane-painted pane) (pane-appearance pane))))
     (repaint pane)))
 
 ;;; The mouse: see pointing.lisp.
@@ -170,7 +170,7 @@ would be cut off. Record in PANE what was painted where."
   (;; What was measured last, and how high it was.
    (measured :initform '(nil 0) :accessor pane-measured)))
 
-(defun measure-detail (pane width)
+(defun measure-content-height (pane width)
   "Return the height in pixels of the complete contents of PANE, drawn WIDTH pixels wide."
   (let ((canvas (make-instance 'svg-canvas :stream (make-broadcast-stream)))
         (window (window-of pane)))
@@ -178,15 +178,15 @@ would be cut off. Record in PANE what was painted where."
       (nth-value 1 (draw-display canvas (pane-display pane) (window-snapshot window)
                                  (window-robot window) :width width)))))
 
-(defun detail-height (pane width)
-  "Return the value of MEASURE-DETAIL for PANE and WIDTH, cached while the contents do not change."
+(defun cached-content-height (pane width)
+  "Return the value of MEASURE-CONTENT-HEIGHT for PANE and WIDTH, cached while the contents do not change."
   (let ((key (list width (display-content (pane-display pane)
                                           (window-robot (window-of pane))))))
     (unless (equal key (first (pane-measured pane)))
-      (setf (pane-measured pane) (list key (measure-detail pane width))))
+      (setf (pane-measured pane) (list key (measure-content-height pane width))))
     (second (pane-measured pane))))
 
-(defmethod pane-content ((pane detail-pane))
+(defmethod pane-appearance ((pane detail-pane))
   (list (pane-offset pane) (multiple-value-list (pane-size pane))
         (window-selection (window-of pane))
         (let ((robot (window-robot (window-of pane))))
@@ -216,7 +216,7 @@ visible part begins, the length of the visible part, and the length of the conte
   (:documentation "Scroll PANE so that it shows POSITION first, in the unit of SCROLL-STATE.")
   (:method (pane position)
     (setf (pane-offset pane) (max 0 (round position)))
-    (limit-offset pane)
+    (limit-scroll-offset pane)
     (repaint-if-changed pane)))
 
 (defun scrollable-p (pane)
@@ -228,7 +228,7 @@ visible part begins, the length of the visible part, and the length of the conte
   "Return the width of PANE without its scroll bar, in pixels."
   (max 1 (- (pane-size pane) +scroll-bar-width+)))
 
-(defgeneric limit-offset (pane)
+(defgeneric limit-scroll-offset (pane)
   (:documentation
    "Scroll PANE back if it is scrolled beyond its contents. Return true if PANE was scrolled back.")
   (:method (pane)

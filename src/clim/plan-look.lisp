@@ -7,7 +7,7 @@
 ;;; reactions; if they are busy, it tries again later. Plans stand still during a look, so looks
 ;;; take a tenth of the time at most.
 
-(defconstant +most-rows+ 300 "The largest number of tasks, or of rows of a timeline, to show.")
+(defconstant +most-plan-rows+ 300 "The largest number of tasks, or of rows of a timeline, to show.")
 (defconstant +longest-trace+ 200000
   "The largest number of entries of a trace for which the window draws a timeline.")
 (defconstant +pause-per-look+ 9
@@ -74,7 +74,7 @@ reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to re
                     (if (> count +longest-trace+)
                         :too-long
                         (let ((bars (bars (funcall entries) (plan-runner-tick runner))))
-                          (and bars (make-timeline-page bars +most-rows+))))))
+                          (and bars (make-timeline-page bars +most-plan-rows+))))))
             t)))))
 
 (defun update-plan-tree (look interface)
@@ -83,7 +83,7 @@ reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to re
                                      (lambda ()
                                        (image-of-tasks (interface-runner interface)
                                                        :folded (plan-look-folded look)
-                                                       :most +most-rows+)))))
+                                                       :most +most-plan-rows+)))))
     (unless (eq seen :busy)
       (setf (plan-look-tree look) seen)
       t)))

@@ -98,7 +98,7 @@
 
 ;;; Painting.
 
-(defmethod pane-content ((pane plan-pane))
+(defmethod pane-appearance ((pane plan-pane))
   (let ((look (plan-look-of pane)))
     (setf (plan-look-shown-p look) (lambda () (pane-shown-p pane)))
     (list (pane-offset pane) (multiple-value-list (pane-size pane))
@@ -149,12 +149,13 @@
 ;;; A click on a task of the tree, or on its name beside the timeline, shows details; a click on the
 ;;; timeline itself rewinds the run to that tick. The right button offers lines of the prompt.
 
-(defstruct (plan-moment (:constructor make-plan-moment (tick bar)) (:copier nil))
+(defstruct (timeline-point (:constructor make-timeline-point (tick bar)) (:copier nil))
   "A point of a timeline: its TICK, and BAR, the bar or text that is drawn at the point, or NIL."
   (tick 0 :type integer :read-only t)
   (bar nil :read-only t))
 
-(defmethod subject-title ((moment plan-moment)) (format nil "Tick ~D" (plan-moment-tick moment)))
+(defmethod subject-title ((moment timeline-point))
+  (format nil "Tick ~D" (timeline-point-tick moment)))
 
 (defmethod subject-key ((image task-image)) (list :task (task-image-serial image)))
 (defmethod subject-key ((bar bar)) (list :task (bar-serial bar)))
@@ -171,9 +172,10 @@
 
 (defmethod describe-subject ((bar bar) stream) (format stream "Task ~A~%" (subject-title bar)))
 
-(defmethod describe-subject ((moment plan-moment) stream)
-  (format stream "Tick ~D: click to rewind to it~@[; drawn here: ~A~]~%" (plan-moment-tick moment)
-          (and (plan-moment-bar moment) (subject-title (plan-moment-bar moment)))))
+(defmethod describe-subject ((moment timeline-point) stream)
+  (format stream "Tick ~D: click to rewind to it~@[; drawn here: ~A~]~%"
+          (timeline-point-tick moment)
+          (and (timeline-point-bar moment) (subject-title (timeline-point-bar moment)))))
 
 ;;; What can be done.
 
@@ -196,10 +198,10 @@
 
 (defun rewind-line-text (tick) (format nil "rewind-to ~D" tick))
 
-(defmethod offers ((moment plan-moment) window)
-  (cons (list "Rewind to this tick" (rewind-line-text (plan-moment-tick moment)))
-        (and (typep (plan-moment-bar moment) 'bar)
-             (offers (plan-moment-bar moment) window))))
+(defmethod offers ((moment timeline-point) window)
+  (cons (list "Rewind to this tick" (rewind-line-text (timeline-point-tick moment)))
+        (and (typep (timeline-point-bar moment) 'bar)
+             (offers (timeline-point-bar moment) window))))
 
 ;;; Where the mouse is.
 
@@ -220,7 +222,7 @@ point of the timeline. Return NIL if PANE shows no subject there."
                                   subjects)
                               x y))
          (tick (tick-at-mouse pane x y)))
-    (if tick (make-plan-moment tick subject) subject)))
+    (if tick (make-timeline-point tick subject) subject)))
 
 (defmethod hover-text ((pane plan-pane) x y) (subject-description (plan-subject-at pane x y)))
 
@@ -237,5 +239,5 @@ point of the timeline. Return NIL if PANE shows no subject there."
                (button (funcall (button-command subject)))
                (fold-mark (toggle-task-folding pane (fold-mark-serial subject))))))
           ((eq button :right) (open-offers-at pane (and subject (list subject)) x y))
-          ((plan-moment-p subject) (rewind-run-to-tick pane (plan-moment-tick subject)))
+          ((timeline-point-p subject) (rewind-run-to-tick pane (timeline-point-tick subject)))
           (t (select-and-describe (window-of pane) subject)))))

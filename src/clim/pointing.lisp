@@ -73,7 +73,7 @@ pane. Return NIL if the position of the mouse is unknown."
 (defun moved-far-p (x y from-x from-y)
   (> (max (abs (- x from-x)) (abs (- y from-y))) +click-tolerance+))
 
-(defun select-next-at (pane x y)
+(defun select-next-subject (pane x y)
   "Select and describe the first subject that PANE shows at X, Y. If an earlier click at X, Y has
 selected one of the subjects there, select the next subject."
   (let* ((window (window-of pane)) (subjects (subjects-under pane x y))
@@ -96,7 +96,7 @@ selected one of the subjects there, select the next subject."
   (if (eq button :right)
       (open-offers-at pane (rotate-to-selected-subject (window-of pane) (subjects-under pane x y)) x
                       y)
-      (select-next-at pane x y)))
+      (select-next-subject pane x y)))
 
 ;;; In the display of designators, the right button scrolls up and the left one down if they do not
 ;;; all fit (manual B); then the middle one opens the menu. Readings 26 and 28.
@@ -118,7 +118,7 @@ selected one of the subjects there, select the next subject."
           ((eql button clim:+pointer-right-button+) :right)
           (t :middle))))
 
-(defun route-press (pane button x y)
+(defun dispatch-press (pane button x y)
   "Handle a press of the mouse BUTTON at X, Y of PANE, on its scroll bar or on its contents."
   (cond ((on-scroll-bar-p pane x)
          (setf (pane-drag pane) :scroll-bar)
@@ -130,12 +130,12 @@ selected one of the subjects there, select the next subject."
 popup. OPENER is the command or menu that had opened the popup.")
   (:method (pane button x y opener)
     (declare (ignore opener))
-    (unless (eq button :left) (route-press pane button x y)))
+    (unless (eq button :left) (dispatch-press pane button x y)))
   ;; A button opens its own panel at once, but only closes that if it is open.
   (:method ((pane bar-pane) button x y opener)
     (let ((pressed (subject-at (pane-subjects pane) x y)))
       (when (and pressed (not (eq opener (button-command pressed))))
-        (route-press pane button x y)))))
+        (dispatch-press pane button x y)))))
 
 (defun handle-press-closing-popup (pane button x y)
   "Handle a press of the mouse BUTTON at X, Y of PANE. Close any open popup other than PANE."
@@ -143,7 +143,7 @@ popup. OPENER is the command or menu that had opened the popup.")
   (let ((opener (and (not (typep pane 'popup-pane)) (close-popup (window-of pane)))))
     (if opener
         (handle-press-after-popup pane button x y opener)
-        (route-press pane button x y))))
+        (dispatch-press pane button x y))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-press-event))
   (multiple-value-call #'handle-press-closing-popup pane (mouse-button-name event)
@@ -157,7 +157,7 @@ popup. OPENER is the command or menu that had opened the popup.")
     (show-description-at-mouse (window-of pane))))
 
 ;; During dragging, the strip describes that, wherever the mouse is.
-(defun dragging-pane (window)
+(defun pane-with-drag (window)
   (find-if #'pane-drag (display-panes window)))
 
 ;; Panels that open or close under the mouse make events of a mouse that rests.
@@ -178,12 +178,12 @@ popup. OPENER is the command or menu that had opened the popup.")
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-motion-event))
   (multiple-value-bind (x y) (event-position pane event)
     (case (pane-drag pane)
-      ((nil) (unless (dragging-pane (window-of pane)) (handle-hover pane x y)))
+      ((nil) (unless (pane-with-drag (window-of pane)) (handle-hover pane x y)))
       (:scroll-bar (drag-scroll-bar pane y))
       (t (handle-drag pane x y)))))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-exit-event))
-  (unless (dragging-pane (window-of pane))
+  (unless (pane-with-drag (window-of pane))
     (clear-description (window-of pane))
     (repaint-if-changed (pane-named (window-of pane) 'strip))))
 

@@ -37,7 +37,7 @@ function that returns true if the box is ticked."
 
 (defun row-ticked-p (row) (and (row-tick row) (funcall (row-tick row)) t))
 
-(defmethod pane-content ((pane popup-pane))
+(defmethod pane-appearance ((pane popup-pane))
   (list (pane-offset pane) (pane-pointed pane)
         (loop for row in (pane-rows pane) collect (list (row-text row) (row-ticked-p row)))))
 
@@ -160,7 +160,7 @@ the symbol of a command, the menu to show, or T."
 (defun help-rows ()
   (mapcar #'make-row
           (append (list "Keys, after a click on a display")
-                  (loop for button in *buttons*
+                  (loop for button in *bar-buttons*
                         collect (format nil "  ~7A ~A" (key-label (button-key button))
                                         (button-help button)))
                   (list "  arrows  move the view" "  return  go back to the input line"
@@ -178,7 +178,7 @@ the symbol of a command, the menu to show, or T."
 
 (defun layer-row-text (layer)
   "Return the text for LAYER in the panel: its title, and its names at the prompt if they differ."
-  (let ((title (layer-title layer)) (words (layer-prompt-names layer)))
+  (let ((title (layer-title layer)) (words (layer-prompt-text layer)))
     (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
 
 (defun layer-rows (window)

@@ -122,7 +122,7 @@ line, and OVER when the user leaves the prompt."
                    what (ars-magna.cli:restart-choices-text (conversation-session conversation))))
 
 ;; While a break waits for an answer, other lines would be taken for a wrong answer.
-(defun refuse-line-at-break-p (conversation line)
+(defun line-refused-at-break-p (conversation line)
   "Return true if LINE cannot run because a break waits for an answer at the prompt and LINE is no
 answer. Print a message in this case."
   (when (and (ars-magna.cli:restart-choices-text (conversation-session conversation))
@@ -132,7 +132,7 @@ answer. Print a message in this case."
 
 (defun run-line-at-prompt (conversation line)
   "Make the prompt run LINE, a string, as if the user had entered it, but keep the input line."
-  (unless (refuse-line-at-break-p conversation line)
+  (unless (line-refused-at-break-p conversation line)
     (ars-magna.cli:enter-line (conversation-session conversation) line)
     (notify-window (conversation-console conversation))))
 
@@ -142,7 +142,7 @@ answer. Print a message in this case."
   (notify-window (conversation-console conversation)))
 
 (defun replace-input-line (conversation text)
-  (unless (refuse-line-at-break-p conversation text)
+  (unless (line-refused-at-break-p conversation text)
     (mapc (lambda (key) (pass-key conversation key))
           (list :control-e :control-u text))))
 

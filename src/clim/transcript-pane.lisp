@@ -19,7 +19,7 @@
 
 (defun pane-transcript (pane) (window-transcript (window-of pane)))
 
-(defmethod pane-content ((pane transcript-pane))
+(defmethod pane-appearance ((pane transcript-pane))
   (list (multiple-value-list (pane-size pane)) (pane-scrolled pane)
         (pane-mark pane) (pane-point pane) (transcript-total (pane-transcript pane))))
 
@@ -65,7 +65,7 @@ transcript is shorter than a page."
             sum (length (rows-of-line number line columns)) into above
             when (<= rows above) return number))))
 
-(defun possible-last-line (pane last)
+(defun full-page-last-line (pane last)
   "Return the number of the line to show at the bottom of PANE: LAST or, if the page would not be
 full, the least number that fills it. Return NIL for the newest line."
   (let ((oldest (last-line-of-first-page pane)))
@@ -78,7 +78,7 @@ full, the least number that fills it. Return NIL for the newest line."
   (let ((scrolled (pane-scrolled pane)))
     (and scrolled
          (= (pane-entered pane) (transcript-entered (pane-transcript pane)))
-         (possible-last-line pane scrolled))))
+         (full-page-last-line pane scrolled))))
 
 (defun rows-in-view (pane count columns)
   "Return the rows that PANE shows, at most COUNT, each of at most COLUMNS characters."
@@ -166,9 +166,9 @@ and TO, lists (number column)."
   "Scroll PANE down by COUNT lines, but not beyond the end of the transcript."
   (let ((transcript (pane-transcript pane)))
     (setf (pane-scrolled pane)
-          (possible-last-line pane (+ (or (last-line-in-view pane)
-                                          (transcript-newest transcript))
-                                      count))
+          (full-page-last-line pane (+ (or (last-line-in-view pane)
+                                           (transcript-newest transcript))
+                                       count))
           (pane-entered pane) (transcript-entered transcript))
     (repaint-if-changed pane)))
 
@@ -180,7 +180,7 @@ and TO, lists (number column)."
          (below (if last (- (transcript-newest transcript) last) 0)))
     (values (max 0 (- count rows below)) rows count)))
 
-(defmethod limit-offset ((pane transcript-pane)) nil)
+(defmethod limit-scroll-offset ((pane transcript-pane)) nil)
 
 (defmethod scroll-to ((pane transcript-pane) position)
   (scroll-lines pane (round (- position (scroll-state pane)))))

@@ -276,7 +276,7 @@ itself, do nothing, because the next tick makes the snapshot."
         (publish-snapshot watcher simulation))))
   watcher)
 
-(defun pace-pictures (watcher)
+(defun run-guarded-pacer (watcher)
   "Run the pacer of WATCHER until the window closes. Report an earlier end to the window."
   (unwind-protect (run-pacer watcher)
     (unless (watcher-over-p watcher)
@@ -285,7 +285,7 @@ itself, do nothing, because the next tick makes the snapshot."
 
 (defun start-pacer (watcher)
   (setf (watcher-pacer watcher)
-        (start-thread (lambda () (pace-pictures watcher))
+        (start-thread (lambda () (run-guarded-pacer watcher))
                       (format nil "pacer of ~A" (watcher-robot watcher)))))
 
 ;; As for the thread of a prompt, it is not the one that ends which starts another.

@@ -161,7 +161,7 @@
    (ghost :initform nil :accessor pane-ghost))
   (:documentation "The pane that shows the world."))
 
-(defmethod pane-content ((pane world-pane))
+(defmethod pane-appearance ((pane world-pane))
   (let* ((window (window-of pane)) (snapshot (window-snapshot window)))
     (when snapshot
       (prepare-view pane)

@@ -88,19 +88,19 @@ PORT if the connection is lost."
 ;;; The user may end that thread, as any of Lisp's. Then windows would get no events; one of them
 ;;; starts another. (The thread that ends cannot do it: Lisp may be ending all.)
 
-(defvar *unread-ports* '()
+(defvar *ports-without-reader* '()
   "The ports whose events no thread reads, because the thread has ended.")
 
 (defun record-unread-port (port)
   "Record that the thread which reads the events of PORT ends, and refresh the windows on PORT."
   (with-lock (*windows-lock*)
-    (when (member port *ports*) (pushnew port *unread-ports*)))
+    (when (member port *ports*) (pushnew port *ports-without-reader*)))
   (mapc #'request-refresh (windows-on-port port)))
 
 (defun restart-event-thread (port)
   "Start a new thread that reads the events of PORT, if the old thread has ended."
   (when (with-lock (*windows-lock*)
-          (member port (shiftf *unread-ports* (remove port *unread-ports*))))
+          (member port (shiftf *ports-without-reader* (remove port *ports-without-reader*))))
     (start-thread (lambda () (loop (clim:process-next-event port))) "events of windows")))
 
 (defmethod clim:process-next-event :around ((port clim:basic-port) &key &allow-other-keys)

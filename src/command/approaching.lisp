@@ -90,6 +90,6 @@ invalid unless another camera tracks it."
     (cond ((null designator) (fail-with operation :not-tracking camera))
           ((eq (designator-type designator) :local)
            (fail-with operation :goto-local camera designator))
-          (t (begin-movement robot)
+          (t (record-movement-start robot)
              (setf (operation-subject operation) designator)
              (go-on-now operation 'approach-on)))))

@@ -33,7 +33,7 @@ Return the value of DRIVE-TICK."
   (let* ((robot (operation-resource operation))
          (left (operation-left operation)))
     ;; What rounding leaves is not driven.
-    (setf (operation-left operation) (reduce-towards-zero left (step-now robot) 1d-9))
+    (setf (operation-left operation) (reduce-towards-zero left (tick-distance robot) 1d-9))
     (drive-tick robot left)))
 
 (defun drive-finished-p (operation)
@@ -83,7 +83,7 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
     "Drive ROBOT straight ahead for TIME ticks. With TIME 0 or less, the command succeeds at once."
   (setf (operation-left operation) (double (ceiling time)))
   (cond ((plusp (operation-left operation))
-         (begin-movement robot)
+         (record-movement-start robot)
          (go-on-now operation 'drive-a-while))
         (t (succeed operation))))
 
@@ -109,7 +109,7 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
      (:report () "Robot stopped"))
     "Drive ROBOT straight ahead for METRES at its current speed. ROBOT-GO-FORWARD drives for ticks."
   (setf (operation-left operation) (double metres))
-  (begin-movement robot)
+  (record-movement-start robot)
   (go-on-now operation 'drive-the-rest))
 
 ;; The manual has none.
@@ -124,7 +124,7 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
               (:not-moving "Robot cannot move: its speed is 0"))
      (:report () "Robot is at a wall"))
     "Drive ROBOT straight ahead until it meets a wall or the edge of the map."
-  (begin-movement robot)
+  (record-movement-start robot)
   (go-on-now operation 'drive-to-wall))
 
 ;; A stop that interrupts another continues it. The robot coasts backwards if it went so.
@@ -150,7 +150,7 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
   (when (zerop (operation-left operation))
     (setf (operation-left operation) (double braking*)))
   (cond ((and (operation-subject operation) (driving-p robot) (plusp braking*))
-         (begin-movement robot)
+         (record-movement-start robot)
          (go-on-now operation 'coast))
         (t (succeed operation))))
 
@@ -214,7 +214,7 @@ heading along it, in quarter turns."
      (:report () "Robot is at the end of the wall"))
     "Drive ROBOT along the nearest wall next to it until the wall ends or a corner is reached.
 Without a wall next to ROBOT, the command succeeds at once."
-  (begin-movement robot)
+  (record-movement-start robot)
   (let ((way (multiple-value-list (wall-to-follow robot))))
     (setf (operation-subject operation) way)
     (if (first way)

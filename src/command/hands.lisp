@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.command)
 
-(export '(check-grips grip-watched-p))
+(export '(end-lost-grips grip-watched-p))
 
 ;;; Common to the commands of hands, cameras and bins. Preconditions are checked in the order in
 ;;; which the manual lists the error codes.
@@ -111,9 +111,9 @@ only DESIGNATOR, with PROBABILITY."
     "Grasp with HAND what a local designator denotes. Whether or not the hand misses, it may bump
 the thing, which silently makes designators of the thing invalid."
   (let ((obstacle (grasp-error-code hand camera designator)))
-    (finish operation
-            (or obstacle (try-grasp hand designator (handling-dice hand)))
-            designator)))
+    (end-operation operation
+                   (or obstacle (try-grasp hand designator (handling-dice hand)))
+                   designator)))
 
 (defun drop-message (hand thing)
   (format nil "~A dropped ~A~@[ into ~A~]" hand thing
@@ -135,7 +135,7 @@ the thing, which silently makes designators of the thing invalid."
   "End OPERATION with the error code CODE, which is an answer and does not count as a failure."
   (queue-operation-message operation (error-text operation code))
   (setf (operation-finished-p operation) t)
-  (notify operation code '()))
+  (notify-caller operation code '()))
 
 ;; See reading 150.
 (define-command hand-grasp-check (operation (hand hand))
@@ -176,7 +176,7 @@ the thing, which silently makes designators of the thing invalid."
     (and (operation-p operation)
          (eq 'watch-grip (operation-step operation)))))
 
-(defun check-grips (world)
+(defun end-lost-grips (world)
   "Check all watched grips in WORLD, and end the HAND-TRACK of each hand that has lost its grip."
   (declare #.*hot*)                     ; in each tick
   (dolist (robot (world-robots world))

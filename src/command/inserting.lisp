@@ -39,7 +39,7 @@
   (let ((code (try-hand-insertion hand (destination-container destination))))
     (when (and (eq code :hand-bump) (designator-p destination))
       (drop-designators-by-chance destination hand-insert-lose-desig-prob* (handling-dice hand)))
-    (finish operation code destination)))
+    (end-operation operation code destination)))
 
 ;; See reading 156.
 (define-command hand-insert (operation (hand hand)
@@ -146,7 +146,7 @@
                    (and (null code)
                         (chance camera-insert-lose-desig-prob* (handling-dice camera)))))
       (drop-designator destination))
-    (finish operation code destination)))
+    (end-operation operation code destination)))
 
 ;;; A closed bin keeps its contents from kicking themselves out, and parts from reaching in.
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.command)
 
-(export '(issue *caller-passes-ticks-p* between-runs-p *recorded-bindings* parameters-bound
+(export '(issue *caller-passes-ticks-p* between-runs-p *recorded-bindings* rebound-parameters
           warn-of-recorded-bindings requested-by-other-run-p))
 
 ;;; Arguments from another run.
@@ -188,7 +188,7 @@ ARGUMENTS, while the same turn is in progress without a continuation. The turn t
   "The commands that a program has issued in a headless run since the last tick, under other
 parameter values than the run's. Each is a list (command world (parameter . value)...).")
 
-(defgeneric parameters-bound (timeline world)
+(defgeneric rebound-parameters (timeline world)
   (:documentation "Return a list of pairs (symbol . value): the parameters that the caller has bound
 to other values than the run of TIMELINE in WORLD uses.")
   (:method (timeline world) (declare (ignore timeline world)) '()))
@@ -223,7 +223,7 @@ it was issued with. Then forget the recorded parameters."
   "Record the parameters bound around COMMAND in WORLD between ticks. Warn at once in a live run."
   (let ((timeline (world-timeline world)))
     (unless (or (asker-forked-p *asker*) (timeline-passing-p timeline))
-      (let ((bindings (parameters-bound timeline world)))
+      (let ((bindings (rebound-parameters timeline world)))
         (cond ((null bindings))
               ((live-p timeline) (warn-of-thread-bindings command world bindings))
               (t (push (list* command world bindings) *recorded-bindings*)))))))

@@ -185,7 +185,7 @@ the same container or in the open (reading 140)."
   (if (eq code :interrupt)
       (report operation code '())
       (record-failure operation code (error-text operation code)))
-  (notify operation code (list designator)))
+  (notify-caller operation code (list designator)))
 
 (defun interrupt-track (operation camera)
   (let ((track (camera-tracking camera)))
@@ -197,7 +197,7 @@ the same container or in the open (reading 140)."
 ;; See reading 83.
 (defun begin-track (operation camera designator)
   (report operation nil (list designator))
-  (notify operation nil (list designator))
+  (notify-caller operation nil (list designator))
   (start-track camera designator operation))
 
 ;; See reading 5.

@@ -90,7 +90,7 @@ with :FAILED if the body fails."
                                               (append things (nthcdr (length things) arguments))))))
                       (list "manipulation " (command-prefix (operation-command operation))))
       (progn (warn-of-returned-value operation (first results))
-             (finish operation (first results) (second results))))))
+             (end-operation operation (first results) (second results))))))
 
 (define-step carry-out (operation (and (manipulation-method-p (operation-subject operation))
                                        (method-takes-p (operation-subject operation)

@@ -205,7 +205,7 @@ MALFORMED-DEFINITION. Return NAME."
                        (lambda ()
                          (manipulation-forms definition name parameters options body)))))
 
-(define-shared command manipulation manipulation-method)
+(define-shared-types command manipulation manipulation-method)
 
 (define-facts (manipulation manipulation)
   "Methods, the newest first" (format nil "~{~A~^; ~}"

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.command)
 
-(export '(operation operation-command operation-resource operation-p finish succeed fail-with
-          notify report go-on))
+(export '(operation operation-command operation-resource operation-p end-operation succeed fail-with
+          notify-caller report go-on))
 
 ;;; Issuing a command posts an OPERATION, a request, to the timeline of its robot. At the start of
 ;;; the next tick the operation takes over its resource, interrupting the command there, and waits
@@ -79,7 +79,7 @@ the command that it has interrupted, or NIL"))
     (list* (command-name command) (resource-for-users operation)
            (operation-arguments operation))))
 
-(defmethod request-entry ((operation operation))
+(defmethod request-journal-entry ((operation operation))
   (command-journal-entry (operation-command operation) operation))
 
 ;;; Ending.
@@ -136,12 +136,12 @@ the command that it has interrupted, or NIL"))
            (command-origin (operation-command operation))
            code (resource-for-users operation) results)))
 
-(defun notify (operation code results)
+(defun notify-caller (operation code results)
   "Call the continuation of OPERATION with CODE and RESULTS at the end of this tick."
   (when (operation-continuation operation)
     (notify-later (operation-timeline operation) 'call-continuation operation code results)))
 
-(defun finish (operation code &rest results)
+(defun end-operation (operation code &rest results)
   "End OPERATION with the error CODE, or successfully if CODE is NIL. The continuation gets CODE,
 the resource and RESULTS. Does nothing if OPERATION has ended already."
   (unless (operation-finished-p operation)
@@ -154,17 +154,17 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
                          collect (first rest))))
       ;; A user's command may fail in its report.
       (unwind-protect (report operation code results)
-        (notify operation code results)))))
+        (notify-caller operation code results)))))
 
 (defun succeed (operation &rest results)
   "End OPERATION successfully; its continuation gets NIL, the resource and RESULTS."
-  (apply #'finish operation nil results))
+  (apply #'end-operation operation nil results))
 
 (register-step 'succeed (constantly t))
 
 (defun fail-with (operation code &rest results)
   "End OPERATION with the error CODE; its continuation gets CODE, the resource and RESULTS."
-  (apply #'finish operation code results))
+  (apply #'end-operation operation code results))
 
 (defun body-begun-p (operation)
   (not (eq (operation-step operation) 'start-body)))
@@ -180,7 +180,7 @@ the resource and RESULTS. Does nothing if OPERATION has ended already."
                         ((body-begun-p operation) (operation-subject operation))))))
 
 (defun interrupt-operation (operation)
-  (apply #'finish operation :interrupt (results-if-interrupted operation)))
+  (apply #'end-operation operation :interrupt (results-if-interrupted operation)))
 
 ;;; Beginning and continuing.
 
@@ -197,7 +197,7 @@ queue a message and end OPERATION with :FAILED."
       (unless (or (operation-finished-p operation)
                   (and returned (event-pending-p operation)))
         (when returned (apply #'error-set (append origin '(" neither ended nor continued"))))
-        (finish operation :failed)))))
+        (end-operation operation :failed)))))
 
 (declaim (inline call-step))
 (defun call-step (operation step)
@@ -267,7 +267,7 @@ RIVAL if it takes no time, such as a ROBOT-SET-SPEED just before a ROBOT-GO-FORW
 (defmethod perform ((operation operation) timeline)
   (declare (ignore timeline))
   (if (robot-retired (resource-robot (operation-resource operation)))
-      (finish operation :interrupt)
+      (end-operation operation :interrupt)
       (begin-operation operation)))
 
 (defun resource-robot (resource)

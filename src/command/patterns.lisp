@@ -77,7 +77,7 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
           (binding (values (value-equal value (cdr binding)) bindings))
           (t (values t (acons matchvar value bindings))))))
 
-(defun clause-fits (clause thing bindings)
+(defun match-clause (clause thing bindings)
   (destructuring-bind (key wanted threshold) clause
     (let ((value (get-attribute thing key)))
       (if (matchvar-p wanted)
@@ -85,10 +85,10 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
           (values (value-fits-p key wanted threshold (comparable-value key value wanted))
                   bindings)))))
 
-(defun pattern-fits (pattern thing bindings)
+(defun match-pattern (pattern thing bindings)
   "True if THING fits PATTERN with BINDINGS. Return the bindings after the match as a second value."
   (dolist (clause pattern (values t bindings))
-    (multiple-value-bind (fits after) (clause-fits clause thing bindings)
+    (multiple-value-bind (fits after) (match-clause clause thing bindings)
       (unless fits (return (values nil bindings)))
       (setf bindings after))))
 
@@ -97,7 +97,7 @@ MALFORMED-DEFINITION about DEFINITION. See reading 126."
   (loop with bindings = '()
         for pattern in patterns
         for thing in things
-        always (multiple-value-bind (fits after) (pattern-fits pattern thing bindings)
+        always (multiple-value-bind (fits after) (match-pattern pattern thing bindings)
                  (setf bindings after)
                  fits)))
 

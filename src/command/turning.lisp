@@ -30,8 +30,9 @@ range, else NIL (reading 91)."
     "Set the speed at which ROBOT drives, limited to the range from 0 to MAX-SPEED*."
   (multiple-value-bind (speed outside) (limit-value speed 0 max-speed*)
     (setf (robot-speed robot) speed)
-    (finish operation (ecase outside ((nil) nil) (:low :negative-speed) (:high :too-high-speed))
-            speed)))
+    (end-operation operation
+                   (ecase outside ((nil) nil) (:low :negative-speed) (:high :too-high-speed))
+                   speed)))
 
 (define-command robot-set-turn-angle (operation (robot robot)
                                       (angle angle
@@ -48,10 +49,10 @@ range, else NIL (reading 91)."
     "Set how far ROBOT turns in a tick, at least MIN-TURN-ANGLE* and at most MAX-TURN-ANGLE*."
   (multiple-value-bind (angle outside) (limit-value angle min-turn-angle* max-turn-angle*)
     (setf (robot-turn-angle robot) angle)
-    (finish operation
-            (ecase outside
-              ((nil) nil) (:low :too-low-turn-angle) (:high :too-high-turn-angle))
-            angle)))
+    (end-operation operation
+                   (ecase outside
+                     ((nil) nil) (:low :too-low-turn-angle) (:high :too-high-turn-angle))
+                   angle)))
 
 ;;; Turning.
 
@@ -83,7 +84,7 @@ range, else NIL (reading 91)."
 
 (defun turn-by (operation robot angle)
   "Turn ROBOT by about ANGLE, beginning in this tick; end OPERATION with the odometry's reading."
-  (begin-movement robot)
+  (record-movement-start robot)
   (setf (operation-left operation) (double angle))
   (if (zerop angle)
       (succeed operation 0d0)

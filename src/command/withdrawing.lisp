@@ -34,7 +34,7 @@ camera's track, or NIL if the command is not in progress."
             ((has-continuation-p (track-operation-of resource) continuation) :track)))))
 
 ;; Called right before it is performed.
-(defmethod request-entry ((withdrawal withdrawal))
+(defmethod request-journal-entry ((withdrawal withdrawal))
   (list 'withdraw-command
         (first (request-arguments withdrawal))
         (withdrawn-command-kind withdrawal)))

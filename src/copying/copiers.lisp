@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.copying)
 
-(export '(copier with-copier copied-run-value copier-option record-copy record-finished-copy
-          define-shared define-shared-slots))
+(export '(copier with-copier value-in-copied-run copier-option record-copy record-finished-copy
+          define-shared-types define-shared-slots))
 
 (define-record (copier (:constructor make-copier ()))
   "An object that copies a run."
@@ -25,7 +25,7 @@ for the copy and true, or NIL and false" :writable)
   "Return the value of the option KEY of COPIER, or NIL."
   (getf (copier-options copier) key))
 
-(defun copied-run-value (copier symbol)
+(defun value-in-copied-run (copier symbol)
   "Return the value to which the run that COPIER copies has bound SYMBOL."
   (cdr (assoc symbol (copier-environment copier) :test #'eq)))
 
@@ -152,7 +152,7 @@ to share it, or a replacement. (forked x fork) returns the counterpart of anothe
 (defvar *shared-types* '()
   "The types of structures that a run shares with its forks.")
 
-(defmacro define-shared (&rest types)
+(defmacro define-shared-types (&rest types)
   "Make a run share objects of TYPES with its forks."
   `(progn ,@(loop for type in types
                   collect `(pushnew ',type *shared-types*)
@@ -197,7 +197,7 @@ copied too. FRESH lists pairs of functions (writer . initial), for slots that ge
         ((and (lisp-symbol-p (class-name (class-of object))) (not (environment-p object))) :ask)
         (t :copy)))
 
-(defun find-copy-policy (object)
+(defun compute-copy-policy (object)
   (let* ((kind (kind-of object)) (way (choose-copy-way object))
          (links (remove :link (and kind (kind-slots kind))
                         :key #'kind-slot-role :test-not #'eq)))
@@ -235,4 +235,4 @@ cache is a vector of pairs (layout . copy-policy), indexed by the number of the 
          (known (svref policies place)))
     (if (eq layout (car known))
         (cdr known)
-        (cdr (setf (svref policies place) (cons layout (find-copy-policy object)))))))
+        (cdr (setf (svref policies place) (cons layout (compute-copy-policy object)))))))

@@ -11,7 +11,7 @@
 ;;;
 ;;;   copied   lists, arrays, tables, structures, instances, conditions, closures with their cells;
 ;;;   fresh    the :LINKs of kinds, as in a new object;
-;;;   shared   numbers, symbols, code, what DEFINE-SHARED says, and :SHARED slots of kinds.
+;;;   shared   numbers, symbols, code, what DEFINE-SHARED-TYPES says, and :SHARED slots of kinds.
 
 (declaim (inline forked))
 (addition forked)
@@ -51,7 +51,7 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
 
 ;;; Other objects.
 
-(define-shared package pathname readtable class generic-function method method-combination)
+(define-shared-types package pathname readtable class generic-function method method-combination)
 
 (defmethod copy-plan-value ((value random-state) fork)
   (record-copy value (make-random-state value) fork))
@@ -65,7 +65,7 @@ second argument, COPIER. The copy may be incomplete until all methods have retur
 
 (defmethod copy-plan-value ((value standard-object) fork)
   (let ((copy (record-copy value (allocate-instance (class-of value)) fork)))
-    (dolist (slot (instance-slot-names (class-of value)))
+    (dolist (slot (per-instance-slot-names (class-of value)))
       (when (slot-boundp value slot)
         (setf (slot-value copy slot) (slot-value value slot))))
     (queue-references copy nil fork)))
@@ -166,7 +166,7 @@ COPY-PLAN-VALUE. Errors of a user's method become CANNOT-FORK."
          (dotimes (index (array-total-size copy))
            (setf (row-major-aref copy index) (forked (row-major-aref copy index) copier))))
         ((value-cell-p copy) (setf (cell-value copy) (forked (cell-value copy) copier)))
-        (t (dolist (slot (instance-slot-names (class-of copy)))
+        (t (dolist (slot (per-instance-slot-names (class-of copy)))
              (when (slot-boundp copy slot)
                (setf (slot-value copy slot) (forked (slot-value copy slot) copier)))))))
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.copying)
 
-(export '(reference digest-state contains-object-p closed-over-values fields-of-type saved-slot-p
+(export '(reference digest-state contains-value-p closed-over-values fields-of-type saved-slot-p
                     blank-object
           note-savable-function savable-function-name find-savable-function contradiction
           signal-contradiction must-hold proper-list-of-p))
@@ -88,11 +88,11 @@ parts. Return DIGEST. A kind may add an :AFTER method.")
                           (loop for (index) in (reference-slots object)
                                 collect (instance-slot object index))
                           '()))
-    (standard-object (loop for slot in (instance-slot-names (class-of object))
+    (standard-object (loop for slot in (per-instance-slot-names (class-of object))
                            when (slot-boundp object slot) collect (slot-value object slot)))
     (t (if (value-cell-p object) (list (cell-value object)) '()))))
 
-(defun contains-object-p (object value)
+(defun contains-value-p (object value)
   "True if VALUE is OBJECT, or is contained in OBJECT at any depth: in lists, arrays, tables,
 closures, structures or instances."
   (let ((seen (make-hash-table :test 'eq)) (work (list object)))
@@ -120,7 +120,7 @@ closures, structures or instances."
   "True if saved runs contain SLOT, an element of FIELDS-OF-TYPE."
   (and (member (kind-slot-role slot) '(:fixed :state :memory)) t))
 
-(defun plain-slot-description (name type)
+(defun make-plain-kind-slot (name type)
   "Return a kind slot that describes the slot NAME, of TYPE, in a structure without a kind."
   (make-kind-slot name :fixed type "" nil nil
                   (constantly nil)
@@ -137,7 +137,7 @@ closures, structures or instances."
     (append slots
             (loop for (name slot-type) in (class-slot-types (find-class type))
                   unless (find name slots :key #'kind-slot-name)
-                    collect (plain-slot-description name slot-type)))))
+                    collect (make-plain-kind-slot name slot-type)))))
 
 (defun blank-object (type fields)
   "Return a new structure of TYPE, a symbol. The caller must then set its FIELDS, descriptions of

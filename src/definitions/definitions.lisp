@@ -48,7 +48,7 @@ string after the name; or NIL."
   (let ((name (abridged name)))
     (format nil "~(~A ~A~)" operator (if (keywordp name) (prin1-to-string name) name))))
 
-(defun definition-text (definition)
+(defun title-of-definition (definition)
   (let ((form (defining-form definition)))
     (definition-title (first form) (second form))))
 
@@ -123,7 +123,7 @@ with VALUE in place of the rejected clause."
     (cond ((replacing-form-p value definition) value)
           ((and clause (not (equal new form))) new)
           (t (reject-use "~S cannot replace a part of ~A. Give a complete form."
-                         value (definition-text definition))))))
+                         value (title-of-definition definition))))))
 
 (defun call-with-definition-restarts (function replace)
   "Call FUNCTION, with restarts for an error in the current definition. SKIP-DEFINITION skips the
@@ -135,17 +135,17 @@ form that has another clause. The new form has these restarts, too."
               (lambda () (funcall replace (funcall choose definition))) replace)))
       (restart-case (funcall function)
         (skip-definition ()
-          :report (lambda (stream) (format stream "Leave ~A out." (definition-text definition)))
+          :report (lambda (stream) (format stream "Leave ~A out." (title-of-definition definition)))
           nil)
         (read-again ()
           :test definition-in-file-p
           :report (lambda (stream)
-                    (format stream "Read ~A again from its file." (definition-text definition)))
+                    (format stream "Read ~A again from its file." (title-of-definition definition)))
           (instead #'reread-definition))
         (use-value (value)
           :report (lambda (stream)
                     (format stream "Replace the clause of ~A, or its whole form."
-                            (definition-text definition)))
+                            (title-of-definition definition)))
           :interactive (lambda () (ask-for-form "A clause to use, or a whole form"))
           (instead (lambda (definition) (replace-clause definition value))))))))
 
@@ -162,7 +162,7 @@ form that has another clause. The new form has these restarts, too."
 (defun reject-failing-form (condition)
   "Signal MALFORMED-DEFINITION because of CONDITION, an error in a form of the current definition."
   (let ((name (undefined-name-of condition)))
-    (reject-clause (definition-text *definition*)
+    (reject-clause (title-of-definition *definition*)
                    (or name (append (operator-and-name (defining-form *definition*)) (list +more+)))
                    (format nil "forms that can be evaluated~:[~;, with a quote before names~] (~A)"
                            name (string-right-trim "." (text-of-condition condition))))))

@@ -83,7 +83,7 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
                                              (and head (clause-line-in-file file head nil))))))))
 
 ;; Lisp itself describes our definitions, such as commands, unless they have another name there.
-(defun show-entry-p (entry registry symbol)
+(defun describe-entry-p (entry registry symbol)
   (or (not (registry-fixed-p registry))
       (and (not (eq symbol (entry-name entry)))
            (facts (entry-object entry)))))
@@ -91,7 +91,7 @@ LABELS-AND-FORMS, each label is followed by a form, in which VARIABLE is bound t
 (defmethod describe-object :after ((symbol symbol) stream)
   (dolist (registry (and symbol *registries*))
     (let ((entry (lookup-entry symbol registry)))
-      (when (and entry (show-entry-p entry registry symbol))
+      (when (and entry (describe-entry-p entry registry symbol))
         (format stream "~&~%~A names ~:[a~;an~] ~A:~%" symbol
                 (find (char (registry-text registry) 0) "aeiou") (registry-text registry))
         (write-fact-lines (append (facts (entry-object entry)) (facts-of-definition entry))

@@ -71,7 +71,7 @@ BASE and the kinds that include it."
   (remove-if-not (lambda (kind) (or (null base) (kind-includes-p kind base)))
                  (all-object-kinds)))
 
-(defun search-kind-name (name base kinds)
+(defun uncached-kind-name (name base kinds)
   (loop for kind in kinds
         when (and (same-name-p name (kind-name kind)) (kind-includes-p kind base))
           return (kind-name kind)))
@@ -84,10 +84,10 @@ BASE and the kinds that include BASE count. Return NIL if no such kind has this 
         ;; Plans' commands ask this for each argument. The cache is valid until a kind is defined.
         (let ((known (get name 'known-kind-name)))
           (unless (and known (eq base (first known)) (eq kinds (second known)))
-            (setf known (list base kinds (search-kind-name name base kinds))
+            (setf known (list base kinds (uncached-kind-name name base kinds))
                   (get name 'known-kind-name) known))
           (third known))
-        (search-kind-name name base kinds))))
+        (uncached-kind-name name base kinds))))
 
 ;;; The contents of an object.
 
@@ -144,7 +144,7 @@ with the role :LINK keep their values. Return OBJECT. A kind may add an :AFTER m
     (let* ((name (kind-slot-name slot))
            (reader (find-symbol (concatenate 'string conc (symbol-name name)) package)))
       (when (and reader (fboundp reader))
-        (setf (documentation reader 'function) (reader-text name (kind-slot-text slot)))))))
+        (setf (documentation reader 'function) (reader-docstring name (kind-slot-text slot)))))))
 
 (defun register-kind (name parent slots conc)
   (let* ((parent (and parent

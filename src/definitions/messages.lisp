@@ -4,7 +4,8 @@
 
 (export '(error-policy warn-at-once queue-notable-warning *message-queue* make-message-queue
                        message-queue
-          copy-message-queue message *reported-robot* *reporting-run* *request-origin* take-messages
+          copy-message-queue message *reported-robot* *get-reporting-run* *request-origin*
+          take-messages
           queue-message queue-message-items message-text phrase write-message *message-limit*
           make-message))
 
@@ -28,7 +29,7 @@
 (defvar *reported-robot* nil
   "The name of the robot that messages queued in this thread are about, or NIL.")
 
-(defvar *reporting-run* (constantly nil)
+(defvar *get-reporting-run* (constantly nil)
   "A function that returns the run to which messages queued in this thread belong, or NIL.")
 
 (define-record (message (:constructor make-message
@@ -42,7 +43,7 @@
   (robot *reported-robot* t
          "the name of the robot whose command the message reports, or NIL" :export)
   ;; Several runs may share a queue.
-  (run (funcall *reporting-run*) t "the run that the message belongs to, or NIL" :export)
+  (run (funcall *get-reporting-run*) t "the run that the message belongs to, or NIL" :export)
   (cause nil t "the reported condition or failure in users' code, or NIL (troubles.lisp)" :export)
   (summary "" string "a text about the cause, on one line")
   (about nil (or null symbol) "the name of the command whose failure the message reports, or NIL")

@@ -21,7 +21,7 @@
   (let ((now (registry-entries registry))
         (then (mapcar #'first kept)))
     (with-lock (*registries-lock*) (set-entries registry then))
-    (mapc #'forget-entry (set-difference now then))
+    (mapc #'undefine-entry (set-difference now then))
     (loop for (entry copy value) in kept
           do (overwrite-object (entry-object entry) copy)
              (when value

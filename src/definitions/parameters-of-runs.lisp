@@ -3,7 +3,7 @@
 (in-package :ars-magna.definitions)
 
 (export '(call-with-parameters call-with-parameter-values parameter-values digest-parameters
-          synchronize-parameters changed-parameters))
+          synchronize-parameters parameters-changed-since))
 
 ;; Much faster than PROGV for parameters defined before this is compiled, as all of ours are.
 (defmacro with-parameters-bound ((values) &body body)
@@ -61,7 +61,7 @@ are added by name, and only if they differ from their defaults. So earlier diges
         finally (digest-add digest (coerce values 'simple-vector))
                 (when others (digest-add digest others))))
 
-(defun changed-parameters (known)
+(defun parameters-changed-since (known)
   "Return an alist (symbol . value) of the parameters changed since PARAMETER-VALUES gave KNOWN."
   (declare (type simple-vector known))
   (loop for parameter in (registry-objects *parameters*)

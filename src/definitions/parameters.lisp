@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(parameter check-parameter-value describe-type define-parameter parameter-settings
+(export '(parameter check-parameter-value describe-type define-parameter non-default-parameters
           check-parameters *noise-before-cleaning* ticks-for noise-of-step per-tick-drift
           per-tick-probability))
 
@@ -110,7 +110,7 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
   (dolist (parameter (registry-objects *parameters*))
     (check-parameter-value parameter (symbol-value (parameter-symbol parameter)))))
 
-(defun parameter-settings ()
+(defun non-default-parameters ()
   "Return a list (symbol value) for each parameter whose value is not its default."
   (loop for parameter in (registry-objects *parameters*)
         for value = (parameter-value parameter)

@@ -53,7 +53,7 @@ form cannot be found, return the start and end of the smallest form around it."
 value of LOCATION-IN-TEXT. Return NIL if both fail."
   (and location
        (ignore-errors
-         (let ((text (text-of-file file)))
+         (let ((text (cached-file-text file)))
            (multiple-value-bind (start end) (bounds-of-location text location)
              (line-number text (or (and form
                                         (car (find form (forms-in text start end)

@@ -244,7 +244,7 @@ in order. SOURCE is a definition's file, :OWN for the simulator's, or NIL for ty
   "Make VARIABLE globally unbound. Bindings of VARIABLE by headless runs remain."
   (join-thread (start-thread (lambda () (makunbound variable)) "forgetting")))
 
-(defun forget-entry (entry)
+(defun undefine-entry (entry)
   (undo-definition (entry-object entry))
   (when (entry-variable entry) (forget-value (entry-variable entry))))
 
@@ -269,7 +269,7 @@ definitions of the simulator; WRONG-ARGUMENT unless KIND and NAME are symbols or
       (deferring-interrupts
         (with-lock (*registries-lock*)
           (set-entries registry (remove entry (registry-entries registry))))
-        (forget-entry entry))
+        (undefine-entry entry))
       name)))
 
 ;;; Making registries.

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(source-of-current-form source-file count-in-file part-in-file-p skip-comment
+(export '(source-of-current-form source-file word-count-in-file part-in-file-p skip-comment
           line-of-clause form-digest file-digest same-printed-form-p))
 
 ;;; A source is a list (file digest): the file of a definition, and a number for its contents then.
@@ -99,7 +99,7 @@ belongs to the last call; it is replaced, never modified."
         ((starts-at-p "#\\" text i) (+ i 3))
         ((char= #\\ (char text i)) (+ i 2))))
 
-(defun open-parentheses (text start end)
+(defun open-paren-positions (text start end)
   (let ((positions '()) (i start))
     (loop while (< i end)
           do (when (char= #\( (char text i)) (push i positions))
@@ -119,7 +119,7 @@ belongs to the last call; it is replaced, never modified."
   (destructuring-bind (operator &optional name &rest clauses) form
     (declare (ignore clauses))
     (with-form-reader (text)
-      (loop for position in (open-parentheses text 0 (length text))
+      (loop for position in (open-paren-positions text 0 (length text))
             when (word-at-p text (1+ position) operator)
               append (multiple-value-bind (found end) (read-words position)
                        (when (and (consp found) (symbolp (first found)) (consp (rest found))
@@ -143,7 +143,7 @@ whose form is unchanged; else number ORDINAL; else the first."
 (defun forms-in (text start end)
   "Return conses (position . form) for the parenthesized forms in TEXT between START and END."
   (with-form-reader (text)
-    (loop for position in (open-parentheses text start end)
+    (loop for position in (open-paren-positions text start end)
           collect (cons position (read-words position)))))
 
 (defvar *form-position-cache* '(())
@@ -175,7 +175,7 @@ than once, prefer the first position after that of the last search."
 (defun line-number (text position)
   (1+ (count #\Newline text :end position)))
 
-(defun text-of-file (file)
+(defun cached-file-text (file)
   "Return the FILE-TEXT of FILE, a native name, cached until the file or the write date changes."
   (let ((path (native-path file)))
     (caching (file (file-write-date path)) (file-text path))))
@@ -194,12 +194,12 @@ return the line of the definition, or NIL."
                   (and place number)))))))
 
 (defun clause-line-in-file (file form clause)
-  (ignore-errors (line-of-clause (text-of-file file) form clause)))
+  (ignore-errors (line-of-clause (cached-file-text file) form clause)))
 
-(defun count-in-file (word file)
+(defun word-count-in-file (word file)
   "Return how often WORD occurs in FILE and its comments, ignoring case; NIL if FILE is unreadable."
   (ignore-errors
-    (loop with text = (text-of-file file)
+    (loop with text = (cached-file-text file)
           for start = (search word text :test #'char-equal)
             then (search word text :test #'char-equal :start2 (1+ start))
           while start count t)))

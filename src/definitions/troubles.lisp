@@ -5,7 +5,7 @@
 (export '(queue-user-error user-code-errors-in remove-errors-of-runs show-unread-messages
                            *echo-output*
           drop-unsignalled-errors take-unread-messages signal-pending-error answering-debugger
-          asking-debugger-text
+          waiting-debugger-name
           end-inquiries *inquiry-hooks* *debugger-refused-p*))
 
 ;;; A message has a cause if it reports an error in users' code, or the failure of a plan that
@@ -191,7 +191,7 @@ are called before the debugger asks for a restart, in the thread of the error.")
 (defun debugger-name (hook)
   (if (or hook *debugger-hook*) "the editor's debugger" "Lisp's own debugger"))
 
-(defun asking-debugger-text (thread)
+(defun waiting-debugger-name (thread)
   "If a debugger asks for a restart of THREAD, return a text that names the debugger; else NIL."
   (let ((inquiry (find thread *inquiries* :key #'inquiry-thread)))
     (and inquiry (debugger-name (inquiry-hook inquiry)))))

@@ -5,8 +5,9 @@
 (export '(*asker* asker-note asker-forked-p *continues-in-forks-p* continues-in-forks-p
           current-asker-note asker-note-text call-user-code *user-error-hooks* note-debugger-waiting
           report-break continue-in-user-code user-calls make-user-calls *user-calls* as-users-code
-          abort-user-code *leaving-ends-work-p* brief-condition-text text-of-origin recurring-code
-          recurring-remedy report-user-error))
+          abort-user-code *leaving-ends-work-p* brief-condition-text text-of-origin
+          recurring-function
+          stop-recurring-remedy report-user-error))
 
 ;;; Several parties may drive a robot, so users want to know whose command is in progress. Code that
 ;;; acts for others binds *ASKER*: CALL-USER-CODE to what it calls, plans to the current task, the
@@ -134,15 +135,15 @@ For a RUN-IS-OVER-ERROR, a request of a finished run, queue only a message, not 
 
 ;;; Code that runs by itself, such as a kicker, may fail again and again.
 
-(defgeneric recurring-code (item)
+(defgeneric recurring-function (item)
   (:documentation "If ITEM, an item of an error message, names a user's function that runs again and
 again by itself, such as a kicker, return that function; else NIL.")
   (:method (item)
     (declare (ignore item))
     nil))
 
-(defgeneric recurring-remedy (item)
-  (:documentation "Return a sentence on how to stop ITEM's function, a value of RECURRING-CODE."))
+(defgeneric stop-recurring-remedy (item)
+  (:documentation "Return a sentence on how to stop ITEM's function, a value of RECURRING-FUNCTION."))
 
 ;;; Calling.
 

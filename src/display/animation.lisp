@@ -68,7 +68,7 @@ FUNCTION are signalled after the replay."
     (fill-with-white canvas 0 0 (+ 7 (monospaced-width text)) +line-height+)
     (draw-text canvas 3 12 text)))
 
-(defun write-frames-of (canvas snapshots rate layers)
+(defun write-animation-frames (canvas snapshots rate layers)
   (loop with count = (length snapshots)
         for snapshot in snapshots
         for index from 0
@@ -159,7 +159,7 @@ arguments are those of SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the erro
       (framed-picture-svg first
                           (lambda (canvas)
                             (draw-terrain canvas (snapshot-map first) :layers layers)
-                            (write-frames-of canvas snapshots rate layers))
+                            (write-animation-frames canvas snapshots rate layers))
                           :layers layers :in-color in-color :scale scale :title title))))
 
 (addition journal-moments)
@@ -191,7 +191,7 @@ was recorded. Signals the errors of REPLAY."
 (defun file-names-text (files)
   "FILES is a list of files, the last one first. Return a text with the first and the last name."
   (format nil "~A~@[ to ~A~]" (file-name-text (first (last files)))
-          (and (rest files) (name-in-directory (first files)))))
+          (and (rest files) (file-base-name (first files)))))
 
 (defun warn-of-older-frames (file count)
   "Warn if files of an older and longer series FILE remain after the new series of COUNT files. The
@@ -204,7 +204,7 @@ older files are not deleted, because the user did not request that."
                                 files. Delete the older files before you make a film of the series."
                            (file-names-text (reverse older)) count)))))
 
-(defun call-reporting-written-files (function files)
+(defun call-naming-files-in-errors (function files)
   "Call FUNCTION, which writes the next file of a series. If FUNCTION signals MISUSE, add the names
 of FILES, the files already written, to the message."
   (handler-case (funcall function)
@@ -221,7 +221,7 @@ of FILES, the files already written, to the message."
                             :display display :layers layers
                             :in-color in-color :scale scale :title title)))
       (call-with-frames (lambda (snapshot)
-                          (push (call-reporting-written-files (lambda () (save snapshot)) files)
+                          (push (call-naming-files-in-errors (lambda () (save snapshot)) files)
                                 files))
                         journal (frame-step journal every until) until :part part))
     (warn-of-older-frames file (length files))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.canvas)
 
-(export '(color shade color-named mix-colors +least-contrast+ primaries color-of-primaries
+(export '(color shade named-shades mix-colors +least-contrast+ primaries color-of-primaries
           luminance color-contrast black-or-white-on tint-grey +textures+ draw-texture))
 
 ;;; A colour is an integer #xRRGGBB, like a pixel in CLX. Vectors run from dark to light. The manual
@@ -62,7 +62,7 @@ plain light hue), where HUE is the name of the colour in the documentation."
   (lightblue* #x0A4468 #x9BDBFA #xDAF2FF "light blue")
   (lightviolet* #x421468 #xB585DE #xE8D6F8 "light violet"))
 
-(defun color-named (name)
+(defun named-shades (name)
   "Return the vector of shades of the colour NAME, a symbol or string, such as the value of a :color
 attribute. Return NIL if NAME is not a colour."
   (and (typep name '(and (or symbol string) (not null)))
@@ -74,7 +74,7 @@ attribute. Return NIL if NAME is not a colour."
 (defun shade (name &optional (index +plain-shade+))
   "Return shade INDEX of the colour NAME, the value of a :color attribute. INDEX is from 0, dark, to
 11, light. Return black if NAME is not a colour (manual B; reading 212)."
-  (let ((shades (color-named name)))
+  (let ((shades (named-shades name)))
     (if shades (aref shades index) black*)))
 
 ;;; Contrast.
@@ -149,13 +149,13 @@ luminance of GREY, so both look the same in a print without colours."
   :documentation "The textures by name, as a property list. Each texture is a list of marks:
 (:across Y), (:down X), (:rising), (:falling), (:stroke X1 Y1 X2 Y2), (:box X Y WIDTH HEIGHT).")
 
-(defun tile-edges (low high tile)
+(defun tile-starts (low high tile)
   "Return the coordinates where tiles begin. The tiles have the size TILE and cover LOW to HIGH."
   (loop for edge from (* tile (floor low tile)) below high by tile collect edge))
 
-(defun tile-levels (low high tile part)
+(defun tile-coordinates (low high tile part)
   "Return the coordinate at the fraction PART of each tile of size TILE, from LOW to below HIGH."
-  (loop for edge in (tile-edges low high tile)
+  (loop for edge in (tile-starts low high tile)
         for level = (+ edge (* part tile))
         when (and (<= low level) (< level high)) collect level))
 
@@ -164,7 +164,7 @@ luminance of GREY, so both look the same in a print without colours."
 RIGHT, BOTTOM. TILE is the size of tiles. SIGN is 1 for falling diagonals and -1 for rising ones."
   (let* ((ends (list (* sign left) (* sign right)))
          (least (- top (reduce #'max ends))) (most (- bottom (reduce #'min ends))))
-    (loop for c in (rest (tile-edges least most tile))
+    (loop for c in (rest (tile-starts least most tile))
           for from = (if (plusp sign) (max left (- top c)) (max left (- c bottom)))
           for to = (if (plusp sign) (min right (- bottom c)) (min right (- c top)))
           when (< from to)
@@ -175,8 +175,8 @@ RIGHT, BOTTOM. TILE is the size of tiles. SIGN is 1 for falling diagonals and -1
 a list x1 y1 x2 y2 .... STROKE is a list x1 y1 x2 y2 in fractions of a tile."
   (flet ((cut-to (low value high) (clamp value low high)))
     (destructuring-bind (x1 y1 x2 y2) stroke
-      (loop for y in (tile-edges top bottom tile)
-            append (loop for x in (tile-edges left right tile)
+      (loop for y in (tile-starts top bottom tile)
+            append (loop for x in (tile-starts left right tile)
                          append (list (cut-to left (+ x (* x1 tile)) right)
                                       (cut-to top (+ y (* y1 tile)) bottom)
                                       (cut-to left (+ x (* x2 tile)) right)
@@ -185,9 +185,10 @@ a list x1 y1 x2 y2 .... STROKE is a list x1 y1 x2 y2 in fractions of a tile."
 (defun mark-segments (mark left top right bottom tile)
   "Return the lines x1 y1 x2 y2 ... of MARK, any mark of a texture but :BOX, in the rectangle."
   (ecase (first mark)
-    (:across (loop for y in (tile-levels top bottom tile (second mark))
+    (:across (loop for y in (tile-coordinates top bottom tile (second mark))
                    append (list left y right y)))
-    (:down (loop for x in (tile-levels left right tile (second mark)) append (list x top x bottom)))
+    (:down (loop for x in (tile-coordinates left right tile (second mark)) append
+                 (list x top x bottom)))
     (:rising (tile-diagonals left top right bottom tile -1))
     (:falling (tile-diagonals left top right bottom tile 1))
     (:stroke (strokes-in-tiles left top right bottom tile (rest mark)))))

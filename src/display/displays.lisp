@@ -8,8 +8,8 @@
 ;;; returns its height. (In the loops, Y steps before the parts run out, so it ends below the last.)
 
 (defconstant +margin+ 6 "The margin of a display, in pixels.")
-(defconstant +object-width+ 90 "The greatest width of a thing in a display, in pixels.")
-(defconstant +object-height+ 12 "The height of things in a display, in pixels.")
+(defconstant +thing-width-limit+ 90 "The greatest width of a thing in a display, in pixels.")
+(defconstant +thing-height+ 12 "The height of things in a display, in pixels.")
 (defconstant +greatest-size-unit+ 8
   "The greatest width of a thing in a display, in pixels per unit of its size.")
 
@@ -54,9 +54,9 @@ robot, so that their widths are in proportion.")
   "Return the width in pixels of a thing of size 1, chosen so that the largest thing fits."
   (let ((largest (reduce #'max (mapcar #'thing-image-size (displayed-thing-images robot))
                          :initial-value 0)))
-    (if (< (* largest +greatest-size-unit+) +object-width+)
+    (if (< (* largest +greatest-size-unit+) +thing-width-limit+)
         +greatest-size-unit+
-        (/ +object-width+ largest))))
+        (/ +thing-width-limit+ largest))))
 
 (defun thing-width (image)
   "Return the width of the thing of IMAGE in a display, in pixels. The width is in proportion to the
@@ -65,7 +65,7 @@ size of the thing, but at least 2."
 
 (defun draw-hollow (canvas x y width)
   "Draw a frame in the current colour. Its black outline makes light colours visible on white."
-  (let ((height (1- +object-height+)) (pen (if (< width 7) 1 2)))
+  (let ((height (1- +thing-height+)) (pen (if (< width 7) 1 2)))
     (with-color black* (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) height))
     (when (and in-color* (<= 4 width))
       (with-lines (:width pen)
@@ -73,15 +73,15 @@ size of the thing, but at least 2."
                         (- width 2 pen) (- height 1 pen))))))
 
 (defun draw-solid (canvas x y width)
-  (draw-rectangle canvas draw-gcontext* x y width +object-height+ t)
+  (draw-rectangle canvas draw-gcontext* x y width +thing-height+ t)
   (with-color black*
-    (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (1- +object-height+))))
+    (draw-rectangle canvas draw-gcontext* x y (max 0 (1- width)) (1- +thing-height+))))
 
 (defun draw-thing-rectangle (canvas image x y)
   "Draw the thing of IMAGE as a rectangle, which is filled if the thing blocks movement and crossed
 out if the thing obstructs view."
   (let* ((width (thing-width image)) (right (+ x (max 0 (1- width))))
-         (bottom (+ y +object-height+ -1)) (solid-p (thing-image-obsmove-p image)))
+         (bottom (+ y +thing-height+ -1)) (solid-p (thing-image-obsmove-p image)))
     (with-color (thing-image-color image)
       (if solid-p (draw-solid canvas x y width) (draw-hollow canvas x y width)))
     (when (thing-image-obsview-p image)
@@ -107,18 +107,18 @@ out if the thing obstructs view."
       (and function
            (or (draw-by-user-code canvas function
                                   (list "the :draw-function of " (subject-title image))
-                                  x y +object-width+ +object-height+
-                                  (thing-image-thing image) x y +object-width+ +object-height+)
-               (fill-with-white canvas x y +object-width+ +object-height+))))))
+                                  x y +thing-width-limit+ +thing-height+
+                                  (thing-image-thing image) x y +thing-width-limit+ +thing-height+)
+               (fill-with-white canvas x y +thing-width-limit+ +thing-height+))))))
 
 (defun draw-thing-with-title (canvas image x y width)
   (with-subject (canvas image)
-    (let ((wide (cond ((draw-by-draw-function canvas image x y) +object-width+)
+    (let ((wide (cond ((draw-by-draw-function canvas image x y) +thing-width-limit+)
                       (t (draw-thing-rectangle canvas image x y)
                          (thing-width image)))))
       (draw-line-of-text canvas (+ x wide +margin+) (- y 2) width (subject-title image)))))
 
-(defun draw-location (canvas location x y width)
+(defun draw-container (canvas location x y width)
   "Draw LOCATION, the container that a hand or camera is in: the image of a thing, a text, or NIL."
   (cond ((null location))
         ((stringp location) (draw-line-of-text canvas x y width (format nil "in ~A" location)))
@@ -209,8 +209,8 @@ display takes no new view, so that it shows only what the robot knows."
       (draw-camera-symbol canvas robot camera y)
       (setf next (draw-paragraph canvas left (+ y 6) width (view-text camera)))
       (when track (draw-tracked-object canvas track left next width))
-      (draw-location canvas (camera-image-location camera)
-                     left (+ next +line-height+) width))
+      (draw-container canvas (camera-image-location camera)
+                      left (+ next +line-height+) width))
     (+ +margin+ (max (+ y (* 2 +camera-symbol-radius+)) (+ next (* 2 +line-height+))))))
 
 ;;; Hands.
@@ -225,7 +225,7 @@ display takes no new view, so that it shows only what the robot knows."
       (if contents
           (draw-thing-with-title canvas contents left (+ y 2) width)
           (draw-line-of-text canvas left y width "empty"))
-      (draw-location canvas (hand-image-location hand) left (+ y +line-height+) width)))
+      (draw-container canvas (hand-image-location hand) left (+ y +line-height+) width)))
   (+ y (* +line-height+ (if (hand-image-location hand) 2 1))))
 
 ;;; Storage bins.

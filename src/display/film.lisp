@@ -37,7 +37,7 @@ number. FRAMES, the latest first, are vectors of line numbers."
     (maphash (lambda (line number) (setf (aref lines number) line)) (reel-numbers reel))
     lines))
 
-(defun changes-in (frame before)
+(defun frame-differences (frame before)
   "FRAME and BEFORE have the same length. Return index number ... of the lines that differ."
   (loop for number across frame
         for old across before
@@ -66,7 +66,7 @@ differences from it. Other frames are written whole."
     (flet ((write-frame (frame out)
              (cond ((and before (= (length frame) (length before)))
                     (write-string "{\"changes\":" out)
-                    (write-array #'write-number (changes-in frame before) out))
+                    (write-array #'write-number (frame-differences frame before) out))
                    (t (write-string "{\"all\":" out)
                       (write-array #'write-number frame out)))
              (write-char #\} out)
@@ -116,7 +116,7 @@ differences from it. Other frames are written whole."
                                       ("2" "twice") ("4" "4 times") ("10" "10 times"))
                 append (list value (if (string= value "1") " selected" "") text))))
 
-(defun write-moment-list (legend moments several-p out)
+(defun write-sidebar (legend moments several-p out)
   "Write the part of the page beside the picture: the list of MOMENTS, and LEGEND, a text of HTML
 list items. If SEVERAL-P, name the robots of MOMENTS."
   (format out "<aside>~%<details~:[ hidden~;~] open><summary>What happened</summary>~%~
@@ -142,7 +142,7 @@ without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MO
   (format out "</h1>~%<noscript><p>Enable scripts in your browser to play this film. Below are ~
                its first and its last frame.</p></noscript>~%")
   (format out "<main><div id=\"stage\">~%~A<noscript>~%~A</noscript></div>~%" picture last-picture)
-  (write-moment-list legend moments several-p out)
+  (write-sidebar legend moments several-p out)
   (format out "</main>~%")
   (write-controls out)
   (format out "<script>~%")
@@ -173,7 +173,7 @@ without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MO
   (format nil "~A, tick~P ~D~@[ to ~D~]" (title-of-journal journal)
           (length ticks) (first ticks) (and (rest ticks) (first (last ticks)))))
 
-(defstruct (film-contents (:constructor make-film-contents (opening)) (:copier nil))
+(defstruct (film-cast (:constructor make-film-cast (opening)) (:copier nil))
   "The contents of a film, for its legend. OPENING is its first snapshot. THINGS is a table from
 things to images. ROBOTS are images of robots. LINES are entries for lines, the latest first."
   (opening nil :type snapshot :read-only t)
@@ -182,26 +182,26 @@ things to images. ROBOTS are images of robots. LINES are entries for lines, the 
   (lines '() :type list))
 
 (defun add-film-contents (snapshot layers contents)
-  (let ((things (film-contents-things contents)))
+  (let ((things (film-cast-things contents)))
     (loop for image across (snapshot-things snapshot)
           do (unless (gethash (thing-image-thing image) things)
                (setf (gethash (thing-image-thing image) things) image)))
     (dolist (image (snapshot-robots snapshot))
-      (pushnew image (film-contents-robots contents) :key #'robot-image-position))
+      (pushnew image (film-cast-robots contents) :key #'robot-image-position))
     (dolist (entry (line-entries snapshot layers))
-      (pushnew entry (film-contents-lines contents) :key #'entry-text :test #'string=))))
+      (pushnew entry (film-cast-lines contents) :key #'entry-text :test #'string=))))
 
 (defun film-legend-entries (contents layers)
-  (let ((opening (film-contents-opening contents))
-        (things (hash-table-values (film-contents-things contents))))
+  (let ((opening (film-cast-opening contents))
+        (things (hash-table-values (film-cast-things contents))))
     (legend-entries (make-snapshot :map (snapshot-map opening) :part (snapshot-part opening)
-                                   :robots (sort (copy-list (film-contents-robots contents)) #'<
+                                   :robots (sort (copy-list (film-cast-robots contents)) #'<
                                                  :key #'robot-image-position)
                                    :things (sort (coerce things 'simple-vector)
                                                  #'< :key #'image-serial))
-                    layers :lines (reverse (film-contents-lines contents)))))
+                    layers :lines (reverse (film-cast-lines contents)))))
 
-(defun film-legend (contents layers in-color)
+(defun film-legend-html (contents layers in-color)
   "Return the legend of a film with CONTENTS as a text of HTML list items."
   (with-output-to-string (out)
     (let ((canvas (make-instance 'svg-canvas :stream out :color-p in-color)))
@@ -228,7 +228,7 @@ values: the reel, the ticks of its frames, SVGs of the first and last frames, an
                         (unless contents
                           ;; The page magnifies the picture as far as there is room: a larger
                           ;; scale would only make its text small.
-                          (setf contents (make-film-contents snapshot)
+                          (setf contents (make-film-cast snapshot)
                                 scale (min (suitable-scale scale snapshot shown)
                                            (fitting-scale snapshot shown))))
                         (add-film-contents snapshot layers contents)
@@ -238,7 +238,7 @@ values: the reel, the ticks of its frames, SVGs of the first and last frames, an
                         (add-frame last reel))
                       journal (frame-step journal every until) until :part part :watch watch)
     (flet ((still (movers)
-             (whole-frame-svg (film-contents-opening contents) movers shown in-color scale)))
+             (whole-frame-svg (film-cast-opening contents) movers shown in-color scale)))
       (values reel (reverse ticks) (still first) (still last) contents))))
 
 (defun film-text (journal moments &key every until rate kinds layers in-color scale title part)
@@ -248,10 +248,10 @@ values: the reel, the ticks of its frames, SVGs of the first and last frames, an
         (record-film journal every until watch part layers in-color scale)
       (with-output-to-string (out)
         (write-film out (or title (film-title journal ticks)) first last
-                    (if (member :legend layers) (film-legend contents layers in-color) "")
+                    (if (member :legend layers) (film-legend-html contents layers in-color) "")
                     reel ticks rate
                     (sort-moments
                      (append (moments-of-kinds kinds (append (funcall seen)
                                                              (moments-in-remarks journal until)))
                              moments))
-                    (and (rest (snapshot-robots (film-contents-opening contents))) t))))))
+                    (and (rest (snapshot-robots (film-cast-opening contents))) t))))))

@@ -83,7 +83,7 @@ the position where ROBOT was placed, because ROBOT may have moved away by TICK."
             (acons name (extended-trail trail robot (simulation-tick simulation))
                    (remove name (simulation-trails simulation) :key #'car :test #'eq))))))
 
-(defun points-of-trail (robot)
+(defun robot-trail-points (robot)
   "Return the points of the trail of ROBOT, as a list x y tick placements ..., the newest first.
 Return NIL if no trail is recorded. Forks do not record trails, so the last part of their trails is
 a straight line to the present position of ROBOT."

@@ -3,7 +3,7 @@
 (in-package :ars-magna.display)
 
 (export '(text-layers picture-layers layer-title define-layer picture-layer-name
-          text-layer-name layer-prompt-names))
+          text-layer-name layer-prompt-text))
 
 ;;; DEFINE-LAYER defines a layer for menus, the prompt, the documentation, legends, pictures and
 ;;; text maps. The layers themselves are in layers.lisp. A layer is drawn at a depth:
@@ -37,7 +37,7 @@
 
 (defun document-layers ()
   (setf (documentation '*picture-layers* 'variable)
-        (addition-text
+        (addition-docstring
          (format nil "The layers that pictures show besides walls, things and robots unless ~
                       :LAYERS is given: a list of some of the following names. The default is ~
                       those with a star.~2%~:{  ~S~:[~; *~]~@[ (~S in text maps)~] -- ~A: ~A~%~}~%~
@@ -116,6 +116,6 @@ the colour of the first robot."
   (let ((layer (find name *layers* :key #'%layer-name)))
     (or (and layer (%layer-text-name layer)) name)))
 
-(defun layer-prompt-names (name)
+(defun layer-prompt-text (name)
   "Return a text with the one or two names that the prompt accepts for the layer NAME."
   (format nil "~A~@[ or ~A~]" name (%layer-text-name (find-layer name))))

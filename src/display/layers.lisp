@@ -71,7 +71,7 @@ lowest layer is first."
 
 (define-layer :wedges "Fields of view"
   "The field of view of each camera, up to walls and things that block the view."
-  :depth :cameras :shown 'unobstructed-camera :draw 'draw-wedge
+  :depth :cameras :shown 'camera-outside-container :draw 'draw-field-of-view
   :ink #x7A1030 :legend "in view"
   :text-name :cones :text 'cone-marks :text-depth :floor)
 
@@ -112,7 +112,7 @@ lowest layer is first."
 
 (define-layer :reach "What moves by itself"
   "A dashed ring around each thing with kickers. How far kickers can move a thing is unknown."
-  :depth :things :shown 'moving-thing-images :draw 'draw-reach
+  :depth :things :shown 'moving-thing-images :draw 'draw-reach-marks
   :ink #x5A3A00 :dashes '(3 3) :legend "may move")
 
 (define-layer :names "Names"

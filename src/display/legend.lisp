@@ -130,7 +130,7 @@ number and the range of its parameters. The lists are sorted by number."
 
 ;;; Places.
 
-(defun place-types-of (snapshot)
+(defun shown-place-types (snapshot)
   (let ((map (snapshot-map snapshot)) (numbers '()))
     (call-for-shown-cells (lambda (index) (pushnew (aref (map-places map) index) numbers)) snapshot)
     (loop for type across (map-place-types map) for number from 0
@@ -152,7 +152,7 @@ number and the range of its parameters. The lists are sorted by number."
 
 ;; As the manual says, concave places and beaks have the same mark without colours.
 (defun place-entries (snapshot)
-  (loop for types in (group-by (place-types-of snapshot) #'place-mark-svg)
+  (loop for types in (group-by (shown-place-types snapshot) #'place-mark-svg)
         collect (let ((type (first types)))
                   (several-names-entry (loop for each in types
                                              collect (list (drawn-name (place-type-name each)) ""))
@@ -194,7 +194,7 @@ number of things if several have the same name, else an empty text."
                                                                 (sample-half-width image))))))
       (and (plusp (length (snapshot-things snapshot)))
            (list (entry-with-sample (canvas x y) "thing"
-                   (let ((graphics-scale* 12)) (draw-upright-line canvas x y)))))))
+                   (let ((graphics-scale* 12)) (draw-thing-as-line canvas x y)))))))
 
 (defun shape-entries (snapshot)
   (flet ((plain (text predicate &rest options)

@@ -51,9 +51,9 @@ below the map if BELOW-P, else at x LEGEND-LEFT. TITLE and SUBTITLE are lists of
 
 ;;; The scale bar, which may be wider than a small map.
 
-(defun bar-metres (width)
+(defun scale-bar-length (width)
   "Return the length in metres of the scale bar for a map WIDTH metres wide."
-  (or (first (last (round-numbers (min width (/ 140 graphics-scale*)))))
+  (or (first (last (one-two-five-series (min width (/ 140 graphics-scale*)))))
       1))
 
 (defun metres-text (metres)
@@ -61,7 +61,7 @@ below the map if BELOW-P, else at x LEGEND-LEFT. TITLE and SUBTITLE are lists of
 
 (defun scale-bar-width (width)
   "Return the width in pixels of the scale bar and its text for a map WIDTH metres wide."
-  (let ((metres (bar-metres width)))
+  (let ((metres (scale-bar-length width)))
     (+ (to-pixels metres) 8 (monospaced-width (metres-text metres)))))
 
 ;;; Scales.
@@ -111,7 +111,7 @@ above +GREATEST-UNMAGNIFIED-SCALE+."
 (defun columns-height (columns)
   (* +line-height+ (length (first columns))))
 
-(defun columns-below (entries width)
+(defun fit-into-columns (entries width)
   "Return ENTRIES divided into columns, together at most WIDTH pixels wide and as low as possible."
   (loop for rows from 1
         for columns = (divide-into-columns entries rows)
@@ -148,7 +148,7 @@ COLUMNS below the map if BELOW-P, else beside it. ROOM is a value of MARGINS-FOR
       (let ((beside (with (divide-into-columns entries
                                                (max 8 (floor (to-pixels height) +line-height+)))
                           nil))
-            (below (with (columns-below entries (max (to-pixels width) 480)) t)))
+            (below (with (fit-into-columns entries (max (to-pixels width) 480)) t)))
         (if (< (arrangement-area below) (arrangement-area beside)) below beside)))))
 
 ;;; The title is as wide as the rest, and has as many lines as it needs for that.
@@ -229,7 +229,7 @@ PER-PIXEL times the height of its font."
 
 (defun draw-scale-bar (canvas width y)
   "Draw the scale bar for a map WIDTH metres wide, with its middle at Y."
-  (let* ((metres (bar-metres width)) (x (to-pixels metres)))
+  (let* ((metres (scale-bar-length width)) (x (to-pixels metres)))
     (with-lines (:width 2)
       (draw-segments canvas draw-gcontext* (list 0 y x y 0 (- y 4) 0 (+ y 4) x (- y 4) x (+ y 4))))
     (draw-text canvas (+ x 8) (+ y 4) (metres-text metres))))

@@ -61,7 +61,7 @@ the contents of each bin. FAILURE is the last failure of a command."
         append (loop for thing in (set-difference after before :test #'eq)
                      collect (list :stow (format nil "stowed ~A in bin ~D" thing index)))))
 
-(defun failures-since (old new robot)
+(defun new-command-failure (old new robot)
   (unless (eq (observation-failure new) (observation-failure old))
     (destructuring-bind (&key command error text &allow-other-keys) (last-failure robot)
       (when (failure-code-p error)
@@ -69,7 +69,7 @@ the contents of each bin. FAILURE is the last failure of a command."
 
 (defun moments-between (old new robot tick)
   (loop for (kind text code) in (append (changes-of-hands old new) (changes-of-bins old new)
-                                        (failures-since old new robot))
+                                        (new-command-failure old new robot))
         collect (make-moment tick kind text (robot-x robot) (robot-y robot) (robot-name robot)
                              code)))
 

@@ -77,7 +77,7 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
     (when (thing-image-obsview-p image)
       (draw-cross canvas x y (* half (if (eq :square (thing-shape image)) 3/4 1/2))))))
 
-(defun draw-upright-line (canvas x y)
+(defun draw-thing-as-line (canvas x y)
   "Draw a thing as a small vertical line, like the manual's figure. A halo shows the line on walls."
   (let ((width (max 2 (round graphics-scale* 4)))
         (height (max 5 (round (* 3/4 graphics-scale*)))))
@@ -94,12 +94,12 @@ For a thing that moves by itself, it is :HOUSE or :DIAMOND."
       (with-subject (canvas image)
         (if in-color*
             (draw-thing-sample canvas image x y (thing-half-width image))
-            (draw-upright-line canvas x y))))))
+            (draw-thing-as-line canvas x y))))))
 
 (defun moving-thing-images (snapshot)
   (coerce (remove-if-not #'thing-image-moving-p (snapshot-things snapshot)) 'list))
 
-(defun draw-reach (canvas images)
+(defun draw-reach-marks (canvas images)
   (loop for image in images
         do (with-halo ((layer-ink :reach) :dashes (layer-dashes :reach))
              (draw-circle canvas (to-pixels (thing-image-x image))
@@ -190,7 +190,7 @@ robot in the list of robots of its world."
 
 ;;; Fields of view, ended by walls and opaque things, are computed from the snapshot when drawn.
 
-(defconstant +sight-ray-spacing+ 0.015d0
+(defconstant +drawn-ray-angle-step+ 0.015d0
   "The angle between rays that find the edge of a field of view, in radians.")
 
 (defun opaque-cell-test (snapshot)
@@ -202,15 +202,15 @@ robot in the list of robots of its world."
     (lambda (index)
       (or (logtest +wall+ (aref flags index)) (and hidden (member index hidden) t)))))
 
-(defun unobstructed-camera (camera)
+(defun camera-outside-container (camera)
   "Return CAMERA, or NIL if it is inside a container and so does not see the map."
   (and (null (camera-image-location camera)) camera))
 
-(defun draw-wedge (canvas camera robot snapshot)
+(defun draw-field-of-view (canvas camera robot snapshot)
   (let* ((map (snapshot-map snapshot)) (x (robot-image-x robot)) (y (robot-image-y robot))
          (width (camera-image-field-of-view camera))
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
-         (count (max 2 (ceiling width +sight-ray-spacing+))))
+         (count (max 2 (ceiling width +drawn-ray-angle-step+))))
     (when (map-index map x y)
       (let ((ends (ray-ends map (opaque-cell-test snapshot) x y first (/ width count) (1+ count))))
         (with-halo ((layer-ink :wedges))

@@ -94,7 +94,7 @@ around X, Y. ROBOT is the image of a robot, or NIL for a thing."
                                   (list (- x gap width) (- (+ y half) high)))
           collect (list left top (+ left width) (+ top high)))))
 
-(defun boxes-beside (x y half width marks)
+(defun boxes-beside-marks (x y half width marks)
   "Return boxes like CANDIDATE-NAME-BOXES. If a box of the index MARKS, such as a track's ring,
 overlaps the target, add boxes beside that box. Without it, names as far away would be ambiguous."
   (append (candidate-name-boxes x y half width)

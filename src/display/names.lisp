@@ -245,8 +245,9 @@ least. Return NIL if there is no such box."
             spot box (confusable-label-targets-near spot box spots
                                                     (name-confusion-distance spot width)))))
     (best-box snapshot layers
-              (boxes-beside (label-target-x spot) (label-target-y spot) (label-target-half spot)
-                            width marks)
+              (boxes-beside-marks (label-target-x spot) (label-target-y spot)
+                                  (label-target-half spot)
+                                  width marks)
               taken :anywhere-p (and (label-target-robot spot) t) :own-p #'own-p)))
 
 (defun on-other-label-target-p (spot spots)

@@ -224,7 +224,7 @@ that one pass finds the old image of each thing."
      :bins (images #'image-of-bin (robot-bins robot))
      :designators (images #'image-of-designator (live-designators robot))
      :odometer (and (robot-main-odometer robot) (image-of-odometer robot))
-     :trail (points-of-trail robot)
+     :trail (robot-trail-points robot)
      :planned-way (robot-remaining-way robot) :notes (layer-notes-of-robot robot))))
 
 ;;; The whole.

@@ -141,7 +141,7 @@
       (spot (+ start extent))
       (write-svg canvas (if fill-p "z\"" "\"")))))
 
-(defun write-ellipse (canvas x y width height pen)
+(defun write-ellipse-start (canvas x y width height pen)
   "Write the start of an ellipse element. Its line, 2 PEN wide, touches the box from inside."
   (extend-svg-reach canvas x y (+ x width) (+ y height))
   (write-svg canvas "<ellipse cx=\"" (+ x (/ width 2)) "\" cy=\"" (+ y (/ height 2))
@@ -150,7 +150,7 @@
 (defmethod paint-arc ((canvas svg-canvas) gcontext x y width height start extent fill-p)
   (let ((pen (if fill-p 0 (pen-reach gcontext))))
     (cond ((>= (abs extent) (- (* 2 pi) 1d-9))
-           (write-ellipse canvas x y width height pen))
+           (write-ellipse-start canvas x y width height pen))
           (t (extend-svg-reach canvas (- x pen) (- y pen) (+ x width pen) (+ y height pen))
              (write-arc-start canvas x y width height start extent fill-p))))
   (write-shape-element-end canvas gcontext fill-p))

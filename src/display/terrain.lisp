@@ -31,8 +31,8 @@ HEIGHT. ORIGIN, an item or a list of items, names FUNCTION in messages (reading 
 FUNCTION succeeds. Otherwise an error message is queued, and the caller must draw over the box."
   (flet ((draw ()
            (let ((*drawing-calls-left* +drawing-calls+) (draw-gcontext* (create-gcontext)))
-             (call-with-limit (lambda () (apply function canvas arguments))
-                              +drawing-seconds+ #'signal-drawing-timeout)
+             (call-with-time-limit (lambda () (apply function canvas arguments))
+                                   +drawing-seconds+ #'signal-drawing-timeout)
              t)))
     (unless (gethash function *broken-graphics*)
       (with-clipping (canvas x y width height)
@@ -142,7 +142,7 @@ TILE pixels wide; without TILE, leave out the texture."
   "Return the width in pixels of a wall from column or row FROM to TO: at least 1, to be visible."
   (max 1 (to-pixels (- to from))))
 
-(defun runs-by-look (runs)
+(defun rectangles-by-look (runs)
   "Return a list (look x y width height ...), in pixels, for each look of the wall RUNS."
   (let ((lists '()))
     (dolist (run runs lists)
@@ -155,7 +155,7 @@ TILE pixels wide; without TILE, leave out the texture."
                      (rest list)))))))
 
 (defun draw-walls (canvas map window)
-  (loop for (look . rectangles) in (sort (runs-by-look (wall-runs map window)) #'<
+  (loop for (look . rectangles) in (sort (rectangles-by-look (wall-runs map window)) #'<
                                          :key (lambda (list) (wall-look-color (first list))))
         do (draw-wall-look canvas look rectangles)))
 
@@ -184,7 +184,7 @@ TILE pixels wide; without TILE, leave out the texture."
 
 ;;; The grid: on the floor only, so that it lies on white.
 
-(defun round-numbers (limit)
+(defun one-two-five-series (limit)
   "Return the list of the numbers 1, 2, 5, 10, 20 and so on up to LIMIT."
   (loop for unit = 1 then (* 10 unit)
         while (<= unit limit)
@@ -193,7 +193,7 @@ TILE pixels wide; without TILE, leave out the texture."
 (defun step-for-distance (pixels)
   "Return the least of 1, 2, 5, 10, 20 ... such that this many cells are at least PIXELS wide."
   (find-if (lambda (step) (<= pixels (to-pixels step)))
-           (round-numbers (* 10 (max 1 (/ pixels graphics-scale*))))))
+           (one-two-five-series (* 10 (max 1 (/ pixels graphics-scale*))))))
 
 (defun marks-between (start end pixels)
   "Return coordinates from START to END, in metres, for axis marks that are at least PIXELS apart."

@@ -62,17 +62,17 @@ SNAPSHOT. The view has at most COLUMNS characters a line and at most ROWS lines 
                          repeat (view-wide view)
                        when (map-index map x y) collect it))))
 
-(defun block-at (view x y)
+(defun block-number-at (view x y)
   "Return the number, counted row by row, of VIEW's block at the point X, Y. Return NIL for none."
   (let ((column (floor (- x (view-left view)) (view-wide view)))
         (row (floor (- y (view-top view)) (view-high view))))
     (when (and (< -1 column (view-columns view)) (< -1 row (view-rows view)))
       (+ column (* row (view-columns view))))))
 
-(defun block-of-index (view index)
+(defun block-number-of-cell (view index)
   "Return the number of the block of VIEW that contains the cell INDEX, or NIL."
   (multiple-value-bind (y x) (floor index (map-width (view-map view)))
-    (block-at view x y)))
+    (block-number-at view x y)))
 
 ;;;; Glyphs
 

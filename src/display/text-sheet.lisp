@@ -7,12 +7,12 @@
 
 (defun glyph-mark-at (view x y glyph)
   "Return a list of one pair (number . GLYPH) for VIEW's block at X, Y, or NIL if X, Y is outside."
-  (let ((number (block-at view x y)))
+  (let ((number (block-number-at view x y)))
     (and number (list (cons number glyph)))))
 
 ;;; Cones.
 
-(defconstant +ray-spacing+ 0.01d0
+(defconstant +ray-angle-step+ 0.01d0
   "The angle between the rays that find the cells in a field of view, in radians.")
 
 (defun cells-along-ray (map opaque-p x y angle)
@@ -28,7 +28,7 @@
 (defun cone-blocks (view robot camera)
   "Return the numbers of the blocks of VIEW that CAMERA of ROBOT sees, at least in part."
   (let* ((width (camera-image-field-of-view camera))
-         (count (max 1 (ceiling width +ray-spacing+)))
+         (count (max 1 (ceiling width +ray-angle-step+)))
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
          (opaque-p (opaque-cell-test (view-snapshot view))))
     (remove-duplicates
@@ -36,12 +36,12 @@
            append (loop for index in (cells-along-ray (view-map view) opaque-p
                                                       (robot-image-x robot) (robot-image-y robot)
                                                       (+ first (* ray (/ width count))))
-                        when (block-of-index view index) collect it)))))
+                        when (block-number-of-cell view index) collect it)))))
 
 (defun cone-marks (view robot)
   (let ((glyph (make-glyph :layer #\` (format nil "in view of ~A" (robot-image-name robot))
                            :yellow)))
-    (loop for camera in (remove-if-not #'unobstructed-camera (robot-image-cameras robot))
+    (loop for camera in (remove-if-not #'camera-outside-container (robot-image-cameras robot))
           append (loop for number in (cone-blocks view robot camera) collect (cons number glyph)))))
 
 ;;; Ways.

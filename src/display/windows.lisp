@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(draw-view-margins view-strip-widths *display-opener* *displays-waiter*
+(export '(draw-view-margins view-strip-widths *display-opener* *window-close-waiter*
                             open-display-or-report))
 
 ;;; A window shows a part of the map. Numbers and scale bar are in strips along its edges. The map
@@ -68,7 +68,7 @@ of MAP. Call this within WITH-CANVAS, with the origin in the corner of MAP."
 (defvar *display-opener* nil
   "A function of a robot that opens a window with its displays, or NIL without ars-magna/clim.")
 
-(defvar *displays-waiter* nil
+(defvar *window-close-waiter* nil
   "A function that waits until all windows are closed, or NIL if ars-magna/clim is not loaded.")
 
 (addition open-display)

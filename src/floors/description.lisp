@@ -142,7 +142,7 @@ the probabilities above which a pixel is OCCUPIED and below which it is FREE; an
                               ~D; give the .yaml file that names the image"
                     size +most-description-octets+))))
 
-(defun description-text (file)
+(defun read-description-text (file)
   "Return the text in FILE. Signals UNUSABLE-FLOOR if it cannot be read."
   (handler-case (file-text file)
     (illegible-file (condition)
@@ -156,4 +156,4 @@ the probabilities above which a pixel is OCCUPIED and below which it is FREE; an
   (let ((file (resolve-file-name name)))
     (check-description-file file)
     (let ((file (truename file)))
-      (description-from file (read-entries file (description-text file))))))
+      (description-from file (read-entries file (read-description-text file))))))

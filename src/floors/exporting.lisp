@@ -58,7 +58,7 @@ EXPORT-MAP with UNKNOWN writes the wall as unknown. Signals UNKNOWN-NAME."
 
 (defun image-name (path)
   "Return the name by which a description in the same directory refers to the image file PATH."
-  (let ((name (name-in-directory path)))
+  (let ((name (file-base-name path)))
     ;; Readers might take ~ for a home directory.
     (if (char= #\~ (char name 0))
         (concatenate 'string "./" name)
@@ -85,7 +85,7 @@ EXPORT-MAP with UNKNOWN writes the wall as unknown. Signals UNKNOWN-NAME."
   (unless (member (pathname-type path) '("yaml" "yml") :test #'equalp)
     (reject-argument 'export-map 'file file
                      "a name that ends in .yaml; the image is written beside the file"))
-  (unless (every #'graphic-char-p (name-in-directory path))
+  (unless (every #'graphic-char-p (file-base-name path))
     (reject-argument 'export-map 'file file
                      "a name of printable characters only, because the .yaml file contains it")))
 

@@ -25,7 +25,7 @@ is the content of tRNS, or NIL. PIXELS are the compressed octets of the pixels."
   (transparency nil :type (or null octets))
   (pixels (make-array 0 :element-type '(unsigned-byte 8)) :type octets))
 
-(defun png-begins-p (input)
+(defun png-signature-p (input)
   (let ((octets (image-input-octets input)))
     (and (< 8 (length octets)) (equalp +png-signature+ (subseq octets 0 8)))))
 

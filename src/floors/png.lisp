@@ -78,7 +78,7 @@ octet STEP to the left of OVER."
                         "the pixels take ~D bytes, for which ~D bytes of compressed ~
                          data are too few" needed (length (png-pixels png)))))
 
-(defun fill-with-rows (png inflater buffer size)
+(defun inflate-next-rows (png inflater buffer size)
   "Fill BUFFER with the next SIZE octets that INFLATER decompresses from PNG."
   (let ((made (inflate-into buffer size inflater)))
     (cond ((null made)
@@ -113,7 +113,7 @@ PNG-PIXEL-OCTETS filler octets, then the octets of the row's pixels. Signals UNU
          (row (make-octets (+ (png-pixel-octets png) size -1))) (above (make-octets (length row))))
     (loop for top from 0 below height by most
           for count = (min most (- height top))
-          do (fill-with-rows png inflater buffer (* count size))
+          do (inflate-next-rows png inflater buffer (* count size))
              (dotimes (i count)
                (call-with-row function png buffer (* i size) (+ top i) row above)
                (rotatef row above)))
@@ -210,7 +210,7 @@ which begin after STEP octets."
 
 ;;; Several channels. Of two octets the high one is the first.
 
-(defun fill-samples-by-sums (row channels octets step samples start width rule)
+(defun fill-samples-by-channels (row channels octets step samples start width rule)
   "Set WIDTH elements of SAMPLES, beginning at START, from the pixels in ROW, which begin after STEP
 octets. A pixel has CHANNELS channels of OCTETS octets each."
   (declare (type octets row) (type samples samples) (type (unsigned-byte 30) start width)
@@ -237,8 +237,8 @@ octets. A pixel has CHANNELS channels of OCTETS octets each."
           (lambda (y row)
             (fill-samples-by-table row table depth step samples (* y width) width)))
         (lambda (y row)
-          (fill-samples-by-sums row channels (floor depth 8) step samples (* y width) width
-                                rule)))))
+          (fill-samples-by-channels row channels (floor depth 8) step samples (* y width) width
+                                    rule)))))
 
 (defun read-png (input limit mode)
   "Return the PNG in INPUT, of at most LIMIT pixels, as a grey image. Signals UNUSABLE-FLOOR."
@@ -254,7 +254,7 @@ octets. A pixel has CHANNELS channels of OCTETS octets each."
   "Return the image in FILE, of at most LIMIT pixels, read in MODE. The first bytes of FILE decide
 whether it is PGM or PNG. Signals UNUSABLE-FLOOR."
   (let ((input (make-image-input file (read-octets file limit))))
-    (cond ((png-begins-p input) (read-png input limit mode))
+    (cond ((png-signature-p input) (read-png input limit mode))
           ((pgm-kind input) (read-pgm input limit))
           (t (reject-image input "the first bytes of the image are not those of a PGM file (P2 or ~
                                   P5) or PNG file; save it in such a format, for example by: ~

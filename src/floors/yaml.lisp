@@ -113,7 +113,7 @@ of the file"))
 (defun find-entry (key entries)
   (find key entries :key #'entry-key :test #'string=))
 
-(defun trim (text)
+(defun trim-blanks (text)
   (string-trim '(#\Space #\Tab #\Return) text))
 
 (defun strip-comment (text)
@@ -121,8 +121,8 @@ of the file"))
   (loop for start = (position #\# text) then (position #\# text :start (1+ start))
         while start
         when (or (zerop start) (blank-character-p (char text (1- start))))
-          return (trim (subseq text 0 start))
-        finally (return (trim text))))
+          return (trim-blanks (subseq text 0 start))
+        finally (return (trim-blanks text))))
 
 (defun closing-quote-position (file line text)
   "Return the position of the closing quote of TEXT, which begins with a quote. In single quotes a
@@ -137,7 +137,7 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
                  (t (return i)))
         finally (reject-floor file line "the closing quote is missing; add a ~C at the end" quote)))
 
-(defun unquoted (file line text end)
+(defun text-in-quotes (file line text end)
   "Return the text between the quotes of TEXT, whose closing quote is at END."
   (with-output-to-string (out)
     (loop with quote = (char text 0) and i = 1
@@ -153,24 +153,24 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
                (write-char char out)
                (incf i)))))
 
-(defun read-quoted (file line text)
+(defun read-quoted-text (file line text)
   (let ((end (closing-quote-position file line text)))
     (unless (string= "" (strip-comment (concatenate 'string " " (subseq text (1+ end)))))
       (reject-floor file line "there is text after the closing quote; leave that text out"))
-    (unquoted file line text end)))
+    (text-in-quotes file line text end)))
 
-(defun read-list (file line text)
+(defun read-yaml-list (file line text)
   (let ((text (strip-comment text)))
     (unless (eql (position #\] text) (1- (length text)))
       (reject-floor file line "a list must be complete on one line, with nothing after it, as in ~
                                [0.0, 0.0, 0.0]"))
-    (mapcar #'trim (uiop:split-string (subseq text 1 (1- (length text))) :separator ","))))
+    (mapcar #'trim-blanks (uiop:split-string (subseq text 1 (1- (length text))) :separator ","))))
 
-(defun value-at (file line text)
+(defun parse-yaml-value (file line text)
   "Return the value in TEXT, the rest of LINE of FILE: a string or a list of strings."
   (case (if (string= "" text) #\Space (char text 0))
-    ((#\" #\') (read-quoted file line text))
-    (#\[ (read-list file line text))
+    ((#\" #\') (read-quoted-text file line text))
+    (#\[ (read-yaml-list file line text))
     ((#\& #\* #\! #\| #\> #\{ #\% #\@ #\`)
      (reject-floor file line "a value that begins with ~C is not supported; write a number, a name ~
                               of a file, or a list [a, b, c]"
@@ -196,11 +196,11 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
     (when other
       (reject-floor file line "~A is on line ~D already; leave one of the two lines out"
                     key (entry-line other)))
-    (make-entry key line (value-at file line (trim (subseq text (1+ end)))))))
+    (make-entry key line (parse-yaml-value file line (trim-blanks (subseq text (1+ end)))))))
 
 (defun list-item-p (text)
   "True if TEXT is an item of a list that is written below its key."
-  (let ((text (trim text)))
+  (let ((text (trim-blanks text)))
     (and (starts-with-subseq "-" text)
          (or (= 1 (length text)) (blank-character-p (char text 1))))))
 
@@ -211,7 +211,7 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
                              as in origin: [0.0, 0.0, 0.0]"))
   (setf (entry-value entry)
         (append (and (consp (entry-value entry)) (entry-value entry))
-                (list (strip-comment (trim (subseq (trim text) 1)))))))
+                (list (strip-comment (trim-blanks (subseq (trim-blanks text) 1)))))))
 
 (defun read-entries (file text)
   "Return the entries in TEXT, the content of FILE, in order. Signals UNUSABLE-FLOOR."
@@ -219,7 +219,7 @@ doubled quote, and in double quotes a quote after a backslash, belongs to the te
     (loop for line from 1
           for whole in (uiop:split-string text :separator '(#\Newline))
           for text = (string-right-trim '(#\Return) whole)
-          until (string= "..." (trim text))
+          until (string= "..." (trim-blanks text))
           do (cond ((string= "" (strip-comment text)))
                    ((and (null entries) (string= "---" (strip-comment text))))
                    ((list-item-p text) (add-list-item file line text (first entries)))

@@ -68,8 +68,8 @@ intervals, return the wider of the gaps along the two axes (manual, Table 3.2)."
 diagonal (manual, Table 3.2; reading 45)."
   (dispatch-on-types interval-width (interval) "an INTERVAL or PT-INTERVAL"
     ((span) (- (high interval) (low interval)))
-    ((region) (length-of (- (high-x interval) (low-x interval))
-                         (- (high-y interval) (low-y interval))))))
+    ((region) (euclidean-length (- (high-x interval) (low-x interval))
+                                (- (high-y interval) (low-y interval))))))
 
 (public interval-overlap-width)
 (defun interval-overlap-width (a b)

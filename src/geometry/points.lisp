@@ -68,7 +68,7 @@ or the result is too large."
 ;;; stores, so that (subtract! a a) is right, and A is as it was if the result is too large; none of
 ;;; them conses. The others work on a fresh copy.
 
-(declaim (inline %add! %add-region! %products %neg!))
+(declaim (inline %add! %add-region! %product-bounds %neg!))
 
 (defun %add! (interval low high)
   (%set-interval! interval (+ (%interval-min interval) low) (+ (%interval-max interval) high)))
@@ -83,7 +83,7 @@ or the result is too large."
   ;; 0 - x, not -x, so that no negative zero turns an ATAN2 round.
   (%set-interval! interval (- 0d0 (%interval-max interval)) (- 0d0 (%interval-min interval))))
 
-(defun %products (interval low high)
+(defun %product-bounds (interval low high)
   (let ((a (* (%interval-min interval) low))
         (b (* (%interval-min interval) high))
         (c (* (%interval-max interval) low))
@@ -156,12 +156,12 @@ If A is an interval, FACTOR may be an interval too (manual, Table 3.1)."
     ((pt finite) (let ((factor (double factor)))
                  (set-pt! a (* (%pt-x a) factor) (* (%pt-y a) factor))))
     ((interval span)
-     (multiple-value-call #'%set-interval! a (%products a (low factor) (high factor))))
+     (multiple-value-call #'%set-interval! a (%product-bounds a (low factor) (high factor))))
     ((pt-interval span)
      (let ((low (low factor)) (high (high factor)))
        (multiple-value-call #'%set-region! a
-         (%products (%pt-interval-x a) low high)
-         (%products (%pt-interval-y a) low high)))))
+         (%product-bounds (%pt-interval-x a) low high)
+         (%product-bounds (%pt-interval-y a) low high)))))
   a)
 
 (public mul)
@@ -176,7 +176,7 @@ is an interval, return the interval or point interval of all products (manual, T
 
 ;;; Lengths.
 
-(declaim (inline length-of least-absolute-value greatest-absolute-value))
+(declaim (inline euclidean-length least-absolute-value greatest-absolute-value))
 
 (defun scaled-length (x y most)
   "Return the length of the vector (X, Y), even if the squares of X and Y overflow or underflow.
@@ -187,7 +187,7 @@ MOST is the larger of their absolute values."
   (let ((x (/ x most)) (y (/ y most)))
     (* most (sqrt (+ (* x x) (* y y))))))
 
-(defun length-of (x y)
+(defun euclidean-length (x y)
   (declare (type double-float x y))
   (let ((most (max (abs x) (abs y))))
     (if (or (< 1d-140 most 1d140) (zerop most))
@@ -205,19 +205,20 @@ MOST is the larger of their absolute values."
   "Return the Euclidean length of the vector to the point A, in metres. If A is an interval or point
 interval, return the INTERVAL of the lengths of its elements (manual, Table 3.1)."
   (dispatch-on-types norm (a) "a PT, INTERVAL, PT-INTERVAL or number"
-    ((pt) (length-of (%pt-x a) (%pt-y a)))
+    ((pt) (euclidean-length (%pt-x a) (%pt-y a)))
     ((finite) (abs (double a)))
     ((interval) (%make-interval (least-absolute-value a) (greatest-absolute-value a)))
     ((pt-interval)
      (let ((x (%pt-interval-x a)) (y (%pt-interval-y a)))
-       (%make-interval (length-of (least-absolute-value x) (least-absolute-value y))
-                       (length-of (greatest-absolute-value x) (greatest-absolute-value y)))))))
+       (%make-interval (euclidean-length (least-absolute-value x) (least-absolute-value y))
+                       (euclidean-length (greatest-absolute-value x)
+                                         (greatest-absolute-value y)))))))
 
 (public dist)
 (defun dist (a b)
   "Return the Euclidean distance of the points A and B, in metres. If A or B is an interval or point
 interval, return the INTERVAL of the distances of their elements (manual, Table 3.1; reading 42)."
   (dispatch-on-types dist (a b) "two points or point intervals, or two intervals or numbers"
-    ((pt pt) (length-of (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
+    ((pt pt) (euclidean-length (- (%pt-x a) (%pt-x b)) (- (%pt-y a) (%pt-y b))))
     ((span span) (norm (subtract a b)))
     ((region region) (norm (subtract a b)))))

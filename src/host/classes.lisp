@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.host)
 
-(export '(define-generic-function-class generic-name class-ancestors class-slot-names
+(export '(define-generic-function-class generic-name class-and-ancestors class-slot-names
            methods-on-class
-          methods-of-generic class-slot-types instance-slot-names reference-slots layout-of
+          methods-of-generic class-slot-types per-instance-slot-names reference-slots layout-of
           layout-hash instance-slot copy-condition))
 
 (defmacro define-generic-function-class (name documentation)
@@ -27,7 +27,7 @@
   (let ((class (find-class name nil)))
     (and class (closer-mop:specializer-direct-methods class))))
 
-(defun class-ancestors (class)
+(defun class-and-ancestors (class)
   "Return a list of CLASS and its superclasses, the most specific first."
   (closer-mop:class-precedence-list (closer-mop:ensure-finalized class)))
 
@@ -41,7 +41,7 @@
             (list (closer-mop:slot-definition-name slot) (closer-mop:slot-definition-type slot)))
           (closer-mop:class-slots class)))
 
-(defun instance-slot-names (class)
+(defun per-instance-slot-names (class)
   "Return the names of the slots of CLASS that are not shared by its instances."
   (mapcar #'closer-mop:slot-definition-name
           (remove :instance (closer-mop:class-slots class)

@@ -142,7 +142,7 @@ attributes the warnings of FUNCTION to FORM. Outside of compiling and loading, d
     (setf (gethash form (unit-tasks *unit*))
           (list function (call-at-source-location form #'error-context) (location-in-text form)))))
 
-(defun call-as-compiler (function)
+(defun call-tracking-warnings (function)
   "Call FUNCTION and report its warnings as those of the compiler. Return two values: whether there
 were warnings, and whether any was worse than a style warning."
   (let ((warned nil) (failed nil))
@@ -160,9 +160,9 @@ were warnings, and whether any was worse than a style warning."
     (values warned failed)))
 
 (defun end-unit (unit)
-  "Do the deferred work of UNIT, in order. Return the values of CALL-AS-COMPILER."
+  "Do the deferred work of UNIT, in order. Return the values of CALL-TRACKING-WARNINGS."
   (if (plusp (hash-table-count (unit-tasks unit)))
-      (call-as-compiler
+      (call-tracking-warnings
        (lambda ()
          (loop for form being the hash-keys of (unit-tasks unit)
                  using (hash-value (function location in-text))
@@ -172,7 +172,7 @@ were warnings, and whether any was worse than a style warning."
                       (funcall function))))))
       (values nil nil)))
 
-(defun move-tasks-to-outer (unit)
+(defun move-tasks-to-outer-unit (unit)
   (loop for form being the hash-keys of (unit-tasks unit) using (hash-value task)
         do (setf (gethash form (unit-tasks (unit-outer unit))) task)))
 
@@ -183,7 +183,7 @@ were warnings, and whether any was worse than a style warning."
       (let ((*unit* (make-unit kind (and (not own) *unit*))))
         (multiple-value-prog1 (funcall function)
           (if (and (unit-outer *unit*) (not (unit-files-p *unit*)))
-              (move-tasks-to-outer *unit*)
+              (move-tasks-to-outer-unit *unit*)
               (let ((unit (shiftf *unit* nil))) (end-unit unit)))))))
 
 (defun call-in-new-unit (function)

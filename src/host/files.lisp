@@ -4,7 +4,7 @@
 
 (export '(base-directory native-name native-path native-path-of-directory path-of-name
           existing-path missing-directory wildcard-name-p replace-file regular-file-p
-          check-writable dangling-link-p name-in-directory file-size unusable-file-text
+          check-writable dangling-link-p file-base-name file-size unusable-file-text
           file-name-text +illegible+ utf-8-encoded utf-8-decoded truncate-file call-with-file-lock
           make-directories make-missing-directory process-id copy-permissions temporary-file-prefix
           remove-abandoned-files *wildcard-text* check-name-decodable environment-value
@@ -61,7 +61,7 @@ true. ~ and ~/ are the home directory."
   (let ((name (if (and (pathnamep file) (not (wildcard-name-p file))) (native-name file) file)))
     (if (equal name "") "\"\"" name)))
 
-(defun name-in-directory (path)
+(defun file-base-name (path)
   "Return the native name of the file PATH without its directories."
   (let ((name (native-name path)))
     (subseq name (1+ (or (position #\/ name :from-end t) -1)))))

@@ -4,9 +4,9 @@
 
 (export '(deferring-interrupts allowing-interrupts with-interruptible-wait
           interrupts-deferred-p unwind-protect-strictly
-          call-holding-interrupts call-with-held-interrupts waiting-at-most deadline-passed
+          call-holding-interrupts call-releasing-interrupts waiting-at-most deadline-passed
           in-any-case call-allowing-interrupts-if call-each time-limit signal-to-callers-first
-          call-with-limit
+          call-with-time-limit
           user-interrupt signal-user-interrupt call-on-interrupt call-on-continuing
           end-on-interrupt end-on-termination))
 
@@ -75,23 +75,23 @@ CLEANUP, or in CLEANUP. In FORM, interrupts are allowed if they are allowed outs
 
 ;;; Strict deferral for functions: code in between cannot allow interrupts.
 
-(defvar *call-with-held-interrupts* #'funcall
+(defvar *call-releasing-interrupts* #'funcall
   "A function that calls its argument, a function, with interrupts allowed.")
 
 (defun call-holding-interrupts (function)
-  "Call FUNCTION with interrupts deferred, except within CALL-WITH-HELD-INTERRUPTS."
+  "Call FUNCTION with interrupts deferred, except within CALL-RELEASING-INTERRUPTS."
   (internal (:sb-sys #:without-interrupts)
     (let* ((holding *interrupt-deferral*)
-           (*call-with-held-interrupts* (lambda (function)
+           (*call-releasing-interrupts* (lambda (function)
                                           (let ((*interrupt-deferral* holding))
                                             (internal (:sb-sys #:with-local-interrupts)
                                               (funcall function)))))
            (*interrupt-deferral* :strictly))
       (funcall function))))
 
-(defun call-with-held-interrupts (function)
+(defun call-releasing-interrupts (function)
   "Call FUNCTION with interrupts allowed, including those that were deferred."
-  (funcall *call-with-held-interrupts* function))
+  (funcall *call-releasing-interrupts* function))
 
 ;;; A deadline, unlike a time limit, interrupts only where a thread waits.
 
@@ -161,7 +161,7 @@ first. Return true if CONDITION is a time limit."
     (when (or limit-p (failed-test-check-p condition)) (signal condition))
     limit-p))
 
-(defun call-with-limit (function seconds give-up)
+(defun call-with-time-limit (function seconds give-up)
   "Call FUNCTION. Whenever SECONDS have passed and FUNCTION has not returned, call GIVE-UP in this
 thread. GIVE-UP may make a non-local exit."
   ;; The timer may have interrupted this thread already when the call ends.

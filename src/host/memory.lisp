@@ -9,7 +9,7 @@
   "Return the number of bytes on the heap that are in use, including garbage."
   (internal (:sb-kernel #:dynamic-usage)))
 
-(defun octets-before-collection ()
+(defun octets-until-collection ()
   "Return how many bytes can be allocated before the next collection; a large number if unknown."
   (let ((trigger (ignore-errors
                   (internal (:sb-sys #:sap-ref-word)
@@ -33,7 +33,7 @@
 (defun collect-garbage-early (octets)
   "Collect garbage now if a garbage collection would otherwise occur while OCTETS of new objects are
 allocated. A later collection would have to copy the new objects."
-  (when (< (octets-before-collection) octets (sb-ext:bytes-consed-between-gcs))
+  (when (< (octets-until-collection) octets (sb-ext:bytes-consed-between-gcs))
     (scrub-stack)
     (sb-ext:gc)))
 

@@ -99,7 +99,7 @@ has the accessor's name."))
 
 (defun class-slot-readers (class)
   "Return an alist from the names of the slots of CLASS to their readers. Inherited slots are last."
-  (loop for class in (class-ancestors class)
+  (loop for class in (class-and-ancestors class)
         for type = (find-nisp-type (class-name class))
         when (and type (eq (nisp-type-class type) (class-name class)))
           append (nisp-type-slots type)))

@@ -13,7 +13,7 @@ logarithms. MARKS are lists (value line...) with lines of text, vertical if UPWA
   (marks '() :type list)
   (upward-p nil :type boolean))
 
-(defun scaled-value (value log-p)
+(defun value-or-logarithm (value log-p)
   "Return VALUE or, if LOG-P, its decimal logarithm. Signals WRONG-ARGUMENT if VALUE has none."
   (cond ((not log-p) value)
         (t (check-argument chart value (plusp value)
@@ -30,7 +30,7 @@ logarithms. MARKS are lists (value line...) with lines of text, vertical if UPWA
   (let ((low (axis-low axis)))
     (+ (axis-from axis)
        (* (- (axis-to axis) (axis-from axis))
-          (/ (- (scaled-value value (axis-log-p axis)) low) (- (axis-high axis) low))))))
+          (/ (- (value-or-logarithm value (axis-log-p axis)) low) (- (axis-high axis) low))))))
 
 ;;; Limits.
 
@@ -93,7 +93,7 @@ of a list are at least LEAST-MARK-STEP apart, and at most 10 of them are between
         when (zerop (mod power every))
           append (loop for factor in factors
                        for value = (* factor (expt 10 power))
-                       when (<= low (scaled-value value t) high)
+                       when (<= low (value-or-logarithm value t) high)
                          collect (list value (significant-digits-text value 4)))))
 
 (defun logarithmic-mark-candidates (low high percent)
@@ -111,7 +111,7 @@ logarithms. The longest list comes first."
 as fit, each at least LEAST pixels wide. The extremes of VALUES are INSET pixels from the ends."
   (let ((least-mark-step (if log-p 0 (least-mark-step values percent)))
         (spots (if log-p
-                   (mapcar (lambda (value) (scaled-value value t)) (or values '(1 10)))
+                   (mapcar (lambda (value) (value-or-logarithm value t)) (or values '(1 10)))
                    values)))
     (multiple-value-bind (low high) (value-range spots least-mark-step)
       (multiple-value-bind (start end) (padded-range low high from to inset)

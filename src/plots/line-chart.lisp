@@ -74,7 +74,7 @@ text; Y, LOW and HIGH may be NIL."
 (defun inset-for-series (series values from to log-p)
   "Return the distance that VALUES must have from the ends of an axis between the pixels FROM and
 TO, so that all SERIES have room side by side."
-  (let* ((places (mapcar (lambda (value) (scaled-value value log-p)) values))
+  (let* ((places (mapcar (lambda (value) (value-or-logarithm value log-p)) values))
          (span (if places (- (reduce #'max places) (reduce #'min places)) 0))
          (gap (if (zerop span) 60 (* (- to from) (/ (least-gap places) span)))))
     (+ 14 (* 1/2 (length series) (series-shift-step (length series) gap)))))

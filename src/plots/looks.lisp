@@ -173,7 +173,7 @@ between words. A word longer than a line is broken after a dash or the like, els
 
 ;;;; The page: margin, title, document
 
-(defconstant +margin+ 16 "The margin around a chart, in pixels.")
+(defconstant +chart-margin+ 16 "The margin around a chart, in pixels.")
 
 (defun check-chart-size (width height)
   (check-argument chart width (whole-p width 300 10000)
@@ -184,16 +184,17 @@ between words. A word longer than a line is broken after a dash or the like, els
 ;;; A heading is a list of a title and a subtitle, each a list of lines.
 
 (defun lay-out-heading (title subtitle width)
-  (let ((room (- width (* 2 +margin+))))
+  (let ((room (- width (* 2 +chart-margin+))))
     (list (wrap-text title room :size 15 :bold-p t) (wrap-text subtitle room))))
 
 (defun heading-bottom (heading)
-  (+ +margin+ (* 19 (length (first heading))) (text-lines-height (second heading))))
+  (+ +chart-margin+ (* 19 (length (first heading))) (text-lines-height (second heading))))
 
 (defun draw-heading (canvas heading)
   (destructuring-bind (title subtitle) heading
-    (let ((y (draw-text-lines canvas +margin+ (+ +margin+ 13) title :size 15 :step 19 :bold-p t)))
-      (draw-text-lines canvas +margin+ (- y 2) subtitle :color +faint-text-color+))))
+    (let ((y (draw-text-lines canvas +chart-margin+ (+ +chart-margin+ 13) title :size 15 :step 19
+                              :bold-p t)))
+      (draw-text-lines canvas +chart-margin+ (- y 2) subtitle :color +faint-text-color+))))
 
 (defun save-chart (file chart)
   "Save CHART, an SVG document from a function such as LINE-CHART, in FILE, replacing it. Return the

@@ -41,10 +41,10 @@ VALUES. Each row is at least LEAST pixels high. The page becomes wider than WIDT
     (let* ((heading (lay-out-heading title subtitle width))
            (rows (loop for (label . words) in entries
                        collect (lay-out-row label words width least)))
-           (left (+ +margin+ (widest #'row-label rows) 12))
+           (left (+ +chart-margin+ (widest #'row-label rows) 12))
            (words-width (widest #'row-words rows))
            (right (max (+ left +least-data-area-width+)
-                       (- width +margin+ (if (plusp words-width) (+ 14 words-width) 16))))
+                       (- width +chart-margin+ (if (plusp words-width) (+ 14 words-width) 16))))
            (across (numeric-x-axis values left right log-x :percent percent))
            (top (+ (heading-bottom heading) 12))
            (bottom (+ 4 (stack-rows rows (+ top 4))))
@@ -52,9 +52,9 @@ VALUES. Each row is at least LEAST pixels high. The page becomes wider than WIDT
            (x-lines (wrap-text x-label (- right left))))
       (make-table :heading heading :x-axis across :rows rows :x-lines x-lines
                   :left left :right right :top top :bottom bottom
-                  :width (ceiling (+ right (max 16 (+ 14 words-width)) +margin+))
+                  :width (ceiling (+ right (max 16 (+ 14 words-width)) +chart-margin+))
                   :height (ceiling (+ bottom (marks-height across) 6 (text-lines-height x-lines)
-                                      +margin+))))))
+                                      +chart-margin+))))))
 
 (defun draw-text-beside-row (canvas x row lines anchor)
   (draw-text-lines canvas x (+ 12 (- (row-middle row) (/ (text-lines-height lines) 2))) lines

@@ -131,10 +131,10 @@ interval. END is the time until which the last of these steps is valid."
 
 (defun draw-risk-counts (canvas curves plot label)
   (let ((y (+ (plot-below plot) 20)))
-    (draw-text-lines canvas +margin+ y (list label) :color +faint-text-color+)
+    (draw-text-lines canvas +chart-margin+ y (list label) :color +faint-text-color+)
     (dolist (curve curves)
       (incf y +chart-line-height+)
-      (draw-legend-sample canvas (curve-index curve) +margin+ (- y 4) t)
+      (draw-legend-sample canvas (curve-index curve) +chart-margin+ (- y 4) t)
       (dolist (mark (axis-marks (plot-x-axis plot)))
         (draw-text-lines canvas (axis-pixel (first mark) (plot-x-axis plot)) y
                          (list (format nil "~D" (count-at-risk (first mark) curve)))
@@ -164,7 +164,7 @@ the heading RISK-LABEL. The other arguments are those of LINE-CHART. Signals WRO
                        :extra (if (some #'curve-times curves)
                                   (+ 10 (* +chart-line-height+ (1+ (length curves))))
                                   0)
-                       :least-left (+ +margin+ +legend-sample-width+ 14
+                       :least-left (+ +chart-margin+ +legend-sample-width+ 14
                                       (/ (risk-count-width curves) 2))
                        options)))
     (plot-svg plot (some #'curve-has-data-p curves)

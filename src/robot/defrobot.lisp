@@ -182,20 +182,20 @@ initarg value ...). Return the robot."
           do (unless (proper-list-p (getf options option))
                (reject (list option (getf options option)) (format nil words))))))
 
-(defun value-form (definition form clause expected)
+(defun checked-value-form (definition form clause expected)
   "FORM is in CLAUSE of DEFINITION. Return a form that evaluates FORM, and signals
 MALFORMED-DEFINITION if FORM signals an error."
   (if (constantp form)
       form
-      `(call-for-value (lambda () ,form) ,definition ',clause ,expected)))
+      `(call-clause-code (lambda () ,form) ,definition ',clause ,expected)))
 
 (defun robot-forms (definition name start options lisp-environment)
   (destructuring-bind (environment (x y) angle) start
     (flet ((value-of (form clause)
-             (value-form definition form clause "a form that has a value")))
+             (checked-value-form definition form clause "a form that has a value")))
       `((define-robot ',name
-          ,(value-form definition (map-reference-form environment lisp-environment) start
-                       "a map, its name, or a form whose value is one")
+          ,(checked-value-form definition (map-reference-form environment lisp-environment) start
+                               "a map, its name, or a form whose value is one")
           (list ,(value-of x (second start)) ,(value-of y (second start)))
           ,(value-of angle start)
           ,@(loop for (option form) in *part-options*

@@ -3,7 +3,7 @@
 (in-package :ars-magna.robot)
 
 (export '(set-robot-pose set-robot-angle drive-tick turn-tick robot-speed-now speed-zero-p
-          longest-step step-now robot-turn-angle-now begin-movement robot-last-move
+          longest-step tick-distance robot-turn-angle-now record-movement-start robot-last-move
           robot-last-move-estimate robot-cell-index))
 
 ;;; Motion is swept: the robot passes through each cell between its position and its target, and
@@ -27,7 +27,7 @@ length, at most DISTANCE; the column and row of the cell at its end; the obstacl
 NIL; and whether the obstacle is in another column."
   (declare (type world world) (type double-float x y dx dy distance))
   (let* ((map (world-map world)) (flags (world-flags world))
-         (cell-x (cell-number x)) (cell-y (cell-number y))
+         (cell-x (column-or-row x)) (cell-y (column-or-row y))
          (back-x (minusp dx)) (back-y (minusp dy))
          (step-x (if back-x -1 1)) (step-y (if back-y -1 1))
          (done nil) (block nil) (sideways nil)
@@ -187,12 +187,12 @@ robot can drive along the border of two cells and stay in one cell."
   "Return the index of the cell that ROBOT is in, or NIL if ROBOT is outside the map."
   (map-index (world-map (robot-world robot)) (robot-x robot) (robot-y robot)))
 
-(declaim (inline robot-speed-now step-now speed-zero-p))
+(declaim (inline robot-speed-now tick-distance speed-zero-p))
 (defun robot-speed-now (robot)
   "Return the speed of ROBOT, at most the current MAX-SPEED*, in metres per tick (reading 93)."
   (min (robot-speed robot) (double max-speed*)))
 
-(defun step-now (robot)
+(defun tick-distance (robot)
   "Return the distance, in metres, that ROBOT drives in a tick at its speed, without noise."
   (* (the double-float (robot-speed-now robot)) (double tick-quantum*)))
 
@@ -203,7 +203,7 @@ robot can drive along the border of two cells and stay in one cell."
 
 (defun longest-step (robot)
   "Return the greatest distance, in metres, that ROBOT can drive in a tick."
-  (* (step-now robot) (+ 1d0 (double motion-noise*))))
+  (* (tick-distance robot) (+ 1d0 (double motion-noise*))))
 
 (defun robot-turn-angle-now (robot)
   "Return the turn angle of ROBOT, in radians per tick, from MIN-TURN-ANGLE* to MAX-TURN-ANGLE*."
@@ -211,7 +211,7 @@ robot can drive along the border of two cells and stay in one cell."
 
 ;;; Driving and turning.
 
-(defun begin-movement (robot)
+(defun record-movement-start (robot)
   "Record that a new movement of ROBOT starts here."
   (setf (robot-start-x robot) (robot-x robot)
         (robot-start-y robot) (robot-y robot)
@@ -244,7 +244,7 @@ uniformly distributed within MOTION-NOISE* of the speed; the odometers read an i
 contains the distance (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
-         (step (step-now robot))
+         (step (tick-distance robot))
          (nominal (max (- step) (min limit step)))
          (noise (noise-of-step motion-noise* (abs nominal) (robot-speed-now robot)))
          (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (world-dice world :motion)))

@@ -13,9 +13,9 @@ last interruption at that time. After another interruption the way is no longer 
   (points '() :type list :read-only t)
   (interruption nil :read-only t))
 
-(define-shared planned-way)
+(define-shared-types planned-way)
 
-(defun way-point (point)
+(defun point-coordinates (point)
   (if (pt-p point)
       (list (pt-x point) (pt-y point))
       (list (double (first point)) (double (second point)))))
@@ -31,7 +31,8 @@ move; digests and journals do not change. Return ROBOT. Signals WRONG-ARGUMENT."
                   (proper-list-of-p (lambda (point) (or (pt-p point) (number-pair-p point))) points)
                   "a list of PTs, or of lists (x y)")
   (setf (robot-published-way robot)
-        (and points (make-planned-way (mapcar #'way-point points) (resource-interruption robot))))
+        (and points
+             (make-planned-way (mapcar #'point-coordinates points) (resource-interruption robot))))
   robot)
 
 (addition robot-planned-way)

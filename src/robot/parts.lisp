@@ -26,7 +26,7 @@
 (define-registry robot "robot" :object-p blueprint-p :by-symbol t
   :finder find-blueprint :lister all-blueprints :internal t)
 
-(define-shared blueprint)
+(define-shared-types blueprint)
 
 ;;; The robot and each part is a resource: it does one thing at a time. A part's LOCATION is NIL
 ;;; (with the robot), a container among the things, or a storage bin.

@@ -56,7 +56,7 @@ cells that rays meet within REACH columns and rows and that hold things on the f
     (unmark-seen flags found)
     (nreverse found)))
 
-(defun place-cells (world number x y angle width count)
+(defun place-cells-in-view (world number x y angle width count)
   "Send COUNT rays from (X,Y) in WORLD, spread over WIDTH radians around ANGLE. Return a list of the
 cells that the rays meet and whose place type has NUMBER in the map."
   (declare #.*hot* (type world world) (type double-float x y angle width)
@@ -110,7 +110,7 @@ rays meet within REACH columns and rows and that hold things."
   "Return the things in CELLS that are local to the robot if LOCAL, else the others (reading 131)."
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '()))
     (dolist (index cells (nreverse things))
-      (do-cell (thing index world)
+      (do-cell-things (thing index world)
         (when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
           (push thing things))))))
 
@@ -135,7 +135,7 @@ rays meet within REACH columns and rows and that hold things."
 
 ;;; Finding some of them, and others.
 
-(defun phantom-count (probability all dice)
+(defun false-sighting-count (probability all dice)
   "Return how many false designators a search finds by chance, at most 8 if ALL, else at most 1."
   (loop with probability = (sensing-error-probability probability)
         while (and (< count 8) (chance probability dice))
@@ -177,7 +177,7 @@ ALL, else one. The list may contain false sightings."
          (finds (matching-things camera type demands dice))
          (phantoms (if (and (camera-location camera) (eq type :non-local))
                        0
-                       (phantom-count false-thing-prob* all dice))))
+                       (false-sighting-count false-thing-prob* all dice))))
     (loop for demand in demands
           unless (demand-attribute demand) do (warn-of-unknown-attribute (demand-key demand) world))
     (loop for find in (all-or-random-one (append finds (make-list phantoms)) all dice)
@@ -190,9 +190,9 @@ ALL, else one. The list may contain false sightings."
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (map (world-map world))
          (number (place-type-index map type)) (own (robot-cell-index robot)))
     (when (and number own)
-      (loop for index in (place-cells world number (robot-x robot) (robot-y robot)
-                                      (camera-heading camera) (camera-field-of-view camera)
-                                      scan-density*)
+      (loop for index in (place-cells-in-view world number (robot-x robot) (robot-y robot)
+                                              (camera-heading camera) (camera-field-of-view camera)
+                                              scan-density*)
             unless (= index own)
               collect (multiple-value-bind (y x) (floor index (map-width map))
                         (cell-type (map-cell map x y)))))))
@@ -205,7 +205,7 @@ symbol by which the caller asked for TYPE (reading 74)."
          (missing (sensing-error-probability miss-place-prob*))
          (finds (remove-if (lambda (place) (declare (ignore place)) (chance missing dice))
                            (places-in-view camera type)))
-         (phantoms (phantom-count (place-type-confusion type) all dice)))
+         (phantoms (false-sighting-count (place-type-confusion type) all dice)))
     (loop for place in (all-or-random-one (append finds (make-list phantoms)) all dice)
           collect (if place
                       (let ((cell (place-cell place)))
@@ -222,7 +222,7 @@ symbol by which the caller asked for TYPE (reading 74)."
 (defun obstructing-thing (index world)
   "Return the largest thing in the cell INDEX that obstructs vision, or NIL (reading 240)."
   (let ((best nil))
-    (do-cell (thing index world)
+    (do-cell-things (thing index world)
       (when (and (thing-obsview-p thing)
                  (or (null best) (> (thing-size thing) (thing-size best))))
         (setf best thing)))
@@ -238,7 +238,7 @@ symbol by which the caller asked for TYPE (reading 74)."
                    ((logtest flag +obsview+)
                     (setf last (thing-substance-parameter
                                 (obstructing-thing index world))))
-                   (t (do-cell (thing index world)
+                   (t (do-cell-things (thing index world)
                         (when (thing-substance-p thing)
                           (incf sum (thing-substance-parameter thing))
                           (incf count)))
@@ -254,7 +254,7 @@ VALUE, or occasionally within the range of the wall parameters of MAP (reading 1
          (roll-between (map-least-parameter map) (map-greatest-parameter map) dice))
         (t (+ value (roll-within (double pixel-error-range*) dice)))))
 
-(defun open-view (camera)
+(defun view-in-open (camera)
   (let* ((robot (camera-robot camera)) (world (robot-world robot)) (pixels '()))
     (do-rays (dx dy) ((camera-heading camera)
                       (camera-field-of-view camera)
@@ -263,7 +263,7 @@ VALUE, or occasionally within the range of the wall parameters of MAP (reading 1
     (nreverse pixels)))
 
 ;; See reading 148.
-(defun inside-view (camera)
+(defun view-in-container (camera)
   (let ((location (camera-location camera)))
     (make-list (camera-resolution camera)
                :initial-element (if (thing-p location)
@@ -277,5 +277,6 @@ store it as CAMERA-LAST-VIEW (manual 3.4.3)."
          (map (world-map world)) (dice (world-dice world :looking)))
     (setf (camera-last-view-tick camera) (world-tick world)
           (camera-last-view camera)
-          (loop for value in (if (camera-location camera) (inside-view camera) (open-view camera))
+          (loop for value in
+                (if (camera-location camera) (view-in-container camera) (view-in-open camera))
                 collect (noisy-pixel value map dice)))))

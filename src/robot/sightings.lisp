@@ -42,7 +42,7 @@
   (values (clamp x 0d0 (- (map-width map) 1d-6))
           (clamp y 0d0 (- (map-height map) 1d-6))))
 
-(defun random-phantom-position (robot angle dice)
+(defun random-false-position (robot angle dice)
   "Return the end of a random walk from ROBOT in the direction ANGLE. After each metre outside the
 robot's cell the walk ends with probability PROB-STOP*, and always at the map's edge (reading 136)."
   (let ((map (world-map (robot-world robot)))
@@ -73,10 +73,10 @@ robot's cell the walk ends with probability PROB-STOP*, and always at the map's 
     (multiple-value-bind (x y)
         (if (eq type :local)
             (robot-position robot)
-            (random-phantom-position robot
-                                     (+ (camera-heading camera)
-                                        (roll-within (* 0.5d0 (camera-field-of-view camera)) dice))
-                                     dice))
+            (random-false-position robot
+                                   (+ (camera-heading camera)
+                                      (roll-within (* 0.5d0 (camera-field-of-view camera)) dice))
+                                   dice))
       (make-sighting type nil x y data))))
 
 (defun false-description (world demands dice)

@@ -56,7 +56,7 @@ During an approach a free line to a corner of the cell is enough."
     (or (null (designator-denotation designator))
         (in-same-cell-p robot x y)
         (line-clear-p world own-x own-y x y)
-        (and (or (camera-approached-p camera) (within-reach-p robot x y))
+        (and (or (camera-guides-approach-p camera) (within-reach-p robot x y))
              (in-sight-p world own-x own-y x y))
         (ecase (ray-visibility world own-x own-y x y
                                (+ (robot-angle robot) (designator-angle designator))
@@ -156,7 +156,7 @@ During an approach a free line to a corner of the cell is enough."
   "True if CAMERA cannot follow the non-local DESIGNATOR any longer. The arrival at the end of an
 approach does not count, because the approach itself reports it (reading 112)."
   (if (robot-at-denotation-p designator)
-      (not (camera-approached-p camera))
+      (not (camera-guides-approach-p camera))
       (or (not (trackable-p designator camera))
           ;; See reading 141.
           (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))

@@ -50,7 +50,7 @@
   (loop for camera across (robot-cameras (designator-robot designator))
           thereis (tracking-p camera designator)))
 
-(defun camera-approached-p (camera)
+(defun camera-guides-approach-p (camera)
   (let ((event (resource-event (camera-robot camera))))
     (and event (approaching-p event camera))))
 
@@ -108,7 +108,7 @@ track is lost and no other camera tracks the designator, drop the designator."
   (end-track camera :lost-track
              (format nil "~A lost track of ~A" camera (camera-tracks camera))))
 
-(defmethod release-resource ((camera camera) timeline)
+(defmethod interrupt-resource ((camera camera) timeline)
   (declare (ignore timeline))
   (call-next-method)
   (end-track camera :interrupt))

@@ -125,7 +125,7 @@ function that returns a thing's list of entries, NAME one that returns an entry'
                   collect (list :manipulation (name-string (manipulation-name manipulation))))))
 
 (defun source-file-name (source)
-  (name-in-directory (native-path (source-file source))))
+  (file-base-name (native-path (source-file source))))
 
 ;;; Their digests.
 

@@ -42,12 +42,12 @@ of WITH-SIMULATION."
      (check-parameters)
      (when clean (clean-simulation))
      (let ((*message-queue* (make-message-queue :error-policy errors)))
-       (call-in-headless function
-                         (fresh-simulation (ensure-list robots) :seed seed :journal journal
-                                                                :thinking thinking)
-                         :variables variables :keep keep)))))
+       (call-in-headless-run function
+                             (fresh-simulation (ensure-list robots) :seed seed :journal journal
+                                                                    :thinking thinking)
+                             :variables variables :keep keep)))))
 
-(defun call-in-headless (function simulation &key variables keep)
+(defun call-in-headless-run (function simulation &key variables keep)
   "Call FUNCTION with the headless SIMULATION as the current simulation. Bind the names of its
 robots to the robots. VARIABLES are further symbols to bind, each to the robot of the same name.
 KEEP says how many forks the run keeps, see KEEP-FORKS. The run is over at the end."
@@ -89,7 +89,7 @@ according to the error policy of the simulation's message queue."
             (setf left-p nil))
           (warn-of-unpassed-ticks simulation left-p)
           (show-unread-messages queue)
-          (end-headless simulation)
+          (end-headless-run simulation)
           ;; What the end interrupts is no error.
           (show-unread-messages
            queue (lambda (message)
@@ -114,7 +114,7 @@ SIMULATION was forked, because ticks may have passed in the fork."
 (define-event *rewound-end-hooks*
   "Functions called at the end of a headless run that was rewound, with the run and its successor.")
 
-(defun end-headless (simulation)
+(defun end-headless-run (simulation)
   "End SIMULATION or, if it was rewound, its successor."
   (let ((reason "the headless simulation that it was in has ended")
         (last (latest-successor simulation)))

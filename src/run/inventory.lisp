@@ -97,7 +97,7 @@ so far, its values :FOUND or :NUMBERED. At the end, the number of the object rep
 
 ;;; Objects that cannot be saved.
 
-(defun reject-object (object why inventory)
+(defun reject-unsavable (object why inventory)
   "Signal MISUSE: OBJECT, in the current object of INVENTORY, cannot be saved for the reason WHY."
   (let ((field (inventory-field inventory)))
     (reject-use "The run cannot be saved: ~@[the slot ~(~A~) of ~]~A contains ~A. ~A."
@@ -135,12 +135,12 @@ so far, its values :FOUND or :NUMBERED. At the end, the number of the object rep
 (defun structure-shape (object inventory)
   (let ((type (type-of object)))
     (unless (and (symbolp type) (savable-structure-type-p type))
-      (reject-object object "Only the Lisp that made this object can use it" inventory))
+      (reject-unsavable object "Only the Lisp that made this object can use it" inventory))
     (list :object type)))
 
 (defun table-shape (table inventory)
   (unless (member (hash-table-test table) *savable-table-tests*)
-    (reject-object table "Hash tables with a user-defined test cannot be saved" inventory))
+    (reject-unsavable table "Hash tables with a user-defined test cannot be saved" inventory))
   (list :table (hash-table-test table) (hash-table-count table)))
 
 (defun saved-object-shape (object inventory)
@@ -153,7 +153,7 @@ same structure can be made. Signals MISUSE."
     (dice (list :dice))
     (agenda (list :agenda (agenda-pending object)))
     (structure-object (structure-shape object inventory))
-    (t (reject-object object "Only the Lisp that made this object can use it" inventory))))
+    (t (reject-unsavable object "Only the Lisp that made this object can use it" inventory))))
 
 (defun shape-fields (shape)
   (and (eq :object (first shape))
@@ -188,8 +188,8 @@ was found before. Return true if it was found before."
              (mark-found object t inventory)
              (push object (inventory-waiting inventory)))
             (other-p
-             (reject-object object "This object has been defined anew, or is no longer defined"
-                            inventory))
+             (reject-unsavable object "This object has been defined anew, or is no longer defined"
+                               inventory))
             (t (setf (gethash object (inventory-states inventory)) :numbered)
                (push (cons object name) (inventory-external-objects inventory)))))))
 
@@ -226,9 +226,9 @@ was found before. Return true if it was found before."
                       (mark-numbered value inventory)))
     (symbol (reserve-characters (+ 10 (* 2 (length (symbol-name value)))) inventory)
      (when (unprintable-atom-p value)
-       (reject-object value "The package of this symbol has a name with ::" inventory)))
+       (reject-unsavable value "The package of this symbol has a name with ::" inventory)))
     (number (reserve-characters 50 inventory)
-     (when (unprintable-atom-p value) (reject-object value "This number is too long" inventory)))
+     (when (unprintable-atom-p value) (reject-unsavable value "This number is too long" inventory)))
     (cons (record-list value (1+ depth) inventory))
     (string (record-string value inventory))
     (t (mark-numbered value inventory))))

@@ -69,7 +69,7 @@ Signals WRONG-ARGUMENT."
                 can be repeated only up to that tick; see *JOURNAL-LIMIT*."
            (journal-length journal) tick)))
 
-(defun room-left-p (journal)
+(defun room-for-entry-p (journal)
   "True if JOURNAL has room for one more entry, or if *JOURNAL-LIMIT* is not a number."
   (not (and (finite-p *journal-limit*)
             (>= (journal-length journal) *journal-limit*))))
@@ -77,7 +77,7 @@ Signals WRONG-ARGUMENT."
 (defun add-entry (journal tick entry)
   "Add ENTRY, a list of an operator and its arguments, at TICK to JOURNAL, if there is room."
   (cond ((journal-full-p journal))
-        ((not (room-left-p journal)) (close-full-journal journal tick))
+        ((not (room-for-entry-p journal)) (close-full-journal journal tick))
         (t (push (cons tick entry) (journal-newest-first journal))
            (incf (journal-length journal))
            (setf (journal-end journal) tick))))
@@ -172,7 +172,7 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
                             :robots (robot-names simulation)
                             :seed (simulation-seed simulation)
                             :thinking (simulation-thinking simulation)
-                            :parameters (settings-with-string-names (parameter-settings))
+                            :parameters (settings-with-string-names (non-default-parameters))
                             :definitions (definitions-depended-on simulation)))))
 
 (defun set-initial-thinking (simulation mode)
@@ -263,9 +263,9 @@ and this code works in another run."
           (let ((*continues-in-forks-p* by-itself-p))
             (perform-change world operator arguments))))))
 
-(defmethod parameters-bound ((timeline timeline) world)
+(defmethod rebound-parameters ((timeline timeline) world)
   (let ((simulation (world-simulation world)))
-    (flet ((changed () (changed-parameters (simulation-known-parameters simulation))))
+    (flet ((changed () (parameters-changed-since (simulation-known-parameters simulation))))
       (cond ((headless-p simulation) (and (eq simulation *simulation*) (changed)))
             ((and (live-p timeline) (not (owner-p timeline)))
              ;; Return those that only this thread has bound.

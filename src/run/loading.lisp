@@ -143,11 +143,11 @@ Parameters that are not in SETTINGS get their defaults."
     (dolist (robot (world-robots world)) (check-robot robot world))
     (dolist (request requests)
       (check-request request)
-      (let ((resource (occupied-resource request)))
+      (let ((resource (resource-of-request request)))
         (must-hold (or (not (typep resource 'resource)) (eq timeline (timeline-of resource)))
                    "a request belongs to another run")))))
 
-(defun occupied-resource (request)
+(defun resource-of-request (request)
   "Return the resource of REQUEST if REQUEST is an operation, otherwise its first argument."
   (if (operation-p request) (operation-resource request) (first (request-arguments request))))
 
@@ -244,7 +244,7 @@ the run uses must be loaded. Nothing in FILE is executed. Signals:
      (settings-of simulation)
      (lambda ()
        (setf *noise-before-cleaning* noise)
-       (call-in-headless function simulation :keep keep)))))
+       (call-in-headless-run function simulation :keep keep)))))
 
 (addition with-loaded-simulation)
 (define-user-macro with-loaded-simulation ((file &key anyway keep) &body body)

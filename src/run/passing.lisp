@@ -185,13 +185,13 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
   "True if SIMULATION has no work left and none of its participants is working."
   (asking (simulation)
     (and (notany #'participant-at-work-p (simulation-participants simulation))
-         (settled-p simulation))))
+         (no-work-left-p simulation))))
 
 (defun wait-until-idle (simulation seconds)
   "Wait at most SECONDS until SIMULATION, live in another thread, is idle. Return true if idle."
   (let ((idle (make-semaphore "idle")))
     (flet ((look (simulation)
-             (when (settled-p simulation) (signal-semaphore idle))))
+             (when (no-work-left-p simulation) (signal-semaphore idle))))
       (in-any-case
         (progn (add-observer #'look simulation)
                (wait-on-idle-semaphore idle seconds simulation))
@@ -212,7 +212,7 @@ failed."
   "OPERATOR waits for SIMULATION, a live run. If SIMULATION is paused and no user can resume it,
 signal MISUSE. If a user can resume it, queue a warning, once in a run."
   (when (paused-without-steps-p simulation)
-    (unless *waits-while-paused-p*
+    (unless *user-can-resume-p*
       (reject-use "~(~A~): the run is paused, so this would wait for ever. Call (resume) first."
                   operator))
     (let ((*message-queue* (simulation-messages simulation)))
@@ -222,7 +222,7 @@ signal MISUSE. If a user can resume it, queue a warning, once in a run."
 
 (defun check-not-failed (simulation)
   "Signal MISUSE if the live SIMULATION is paused because it has failed."
-  (let ((trouble (clock-trouble simulation)))
+  (let ((trouble (clock-failure-text simulation)))
     (when trouble
       (reject-use "await-idle: the simulator has failed and is paused, so no ticks pass: ~A. ~
                    (resume) continues the run."

@@ -84,7 +84,7 @@ for this call. ARGUMENTS are externalized unless OPERATOR is a function, see ACT
 (defun pending-acts (simulation)
   "Return the requests that wait for the next tick of SIMULATION as acts, the newest first."
   (loop for request in (timeline-inbox (simulation-timeline simulation))
-        for (operator . arguments) = (request-entry request)
+        for (operator . arguments) = (request-journal-entry request)
         collect (request-act request simulation operator
                              (memorize-arguments (externalize arguments)))))
 
@@ -226,15 +226,15 @@ participant is busy, try again at the end of the next tick."
     (unless (eq :busy fork)
       (update-fork-cost past began))))
 
-(defconstant +max-fork-checks+ 100
+(defconstant +max-fork-wait-checks+ 100
   "How many times a thread checks whether the fork that it waits for was made, before it gives up.")
 
 (defun await-postponed-fork (simulation)
   "If a fork of SIMULATION was postponed because this thread was busy, wait until the fork is made
-at the end of the next tick. Give up after +MAX-FORK-CHECKS+ checks, as the ticks may have stopped."
+at the end of the next tick. Give up after +MAX-FORK-WAIT-CHECKS+ checks, as the ticks may have stopped."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
     (when (and past (past-wanted past))
-      (loop repeat +max-fork-checks+
+      (loop repeat +max-fork-wait-checks+
             while (past-wanted past)
             do (serve-and-wait-once moment 0.002))
       (setf (past-wanted past) nil))))

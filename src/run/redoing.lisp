@@ -43,7 +43,7 @@ time, too. If ACT has an operator, an error is recorded as a divergence."
 (defun same-request-p (request act)
   "True if REQUEST and the request of ACT are the same. Unless REQUEST is an event, compare only the
 first arguments: what a plan withdraws is not known before the withdrawal."
-  (destructuring-bind (operator . arguments) (request-entry request)
+  (destructuring-bind (operator . arguments) (request-journal-entry request)
     (let ((arguments (externalize arguments)))
       (and (eq operator (act-operator act))
            (alike-across-runs-p (first arguments) (first (act-arguments act)))
@@ -105,7 +105,7 @@ first arguments: what a plan withdraws is not known before the withdrawal."
           (t (- goal (simulation-tick simulation))))))
 
 ;; The observer is called before the first participant acts, so earlier acts are repeated by then.
-(defun advance-to (goal repetition)
+(defun advance-repetition (goal repetition)
   "Pass ticks up to GOAL, and repeat all acts on the way."
   (let* ((simulation (repetition-simulation repetition))
          (timeline (simulation-timeline simulation))
@@ -127,7 +127,7 @@ and the current simulation. Return the tick at which a plan diverged, or NIL."
     ;; The fork may have been kept before a live run's plans, in their thread, reacted to its last
     ;; tick. In other runs plans react inside ticks.
     (when (timeline-real-p (simulation-timeline simulation)) (let-participants-act simulation))
-    (advance-to goal repetition)
+    (advance-repetition goal repetition)
     (dolist (request (repetition-held repetition))
       (post-again request (simulation-timeline simulation)))
     (record-settings simulation)

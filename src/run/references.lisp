@@ -180,4 +180,4 @@ the same class that have no reference. (Each run has its own copy of such object
   "True if ONE and OTHER, both externalized or memorized, can denote the same object in two runs."
   (and (tree-p one) (tree-p other) (alike-trees-p one other)))
 
-(define-shared object-placeholder)
+(define-shared-types object-placeholder)

@@ -107,22 +107,22 @@ false if another world has become resident in its map."
                   (end-simulation (world-simulation world) reason)
                   t))))
 
-(defun end-resident (map reason)
+(defun end-resident-world (map reason)
   "End the resident world of MAP for REASON. Another map has replaced MAP."
   ;; Another thread may rewind its run meanwhile, which makes another world resident.
   (loop until (end-world-run (map-resident map) reason)))
 
 ;; A time limit must not leave the old world live: no name would lead to it.
-(defun end-resident-safely (map reason)
-  "Call END-RESIDENT at once or, if this thread is interrupted, between two ticks."
+(defun end-resident-world-safely (map reason)
+  "Call END-RESIDENT-WORLD at once or, if this thread is interrupted, between two ticks."
   (let ((done-p nil))
     (deferring-interrupts
       (unwind-protect (allowing-interrupts
-                        (end-resident map reason)
+                        (end-resident-world map reason)
                         (setf done-p t))
         (unless done-p
           (ask-later (ensure-timeline (map-resident map))
-                     (lambda () (end-resident map reason))))))))
+                     (lambda () (end-resident-world map reason))))))))
 
 (defmethod map-replaced ((old map) new)
   (let* ((world (map-resident old))
@@ -131,7 +131,7 @@ false if another world has become resident in its map."
          (reason (if new "its map has been defined anew" "its map has been taken back")))
     (in-any-case
       (when world (warn-of-ended-run old simulation new))
-      (when world (end-resident-safely old reason))
+      (when world (end-resident-world-safely old reason))
       (when new (remake-robots new)))))
 
 (defmethod map-replaced ((old null) (new map))

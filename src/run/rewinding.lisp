@@ -110,7 +110,7 @@ it: the binding, the global value or both."
          (lambda (symbol value) (setf (global-value symbol) value (symbol-value symbol) value)))
         (t #'set)))
 
-(defun set-variables (new old)
+(defun take-over-variables (new old)
   "Set the variables of OLD to their values in NEW, where code in OLD sees them."
   (let ((setter (variable-setter old)))
     (loop for (symbol . value) in (simulation-environment new)
@@ -121,7 +121,7 @@ it: the binding, the global value or both."
     (funcall setter '*simulation* new)
     (funcall setter '*world* (simulation-world new))))
 
-(defun make-resident (new)
+(defun make-world-resident (new)
   "Make the world of NEW the world of top-level code, and set the variables of its robots."
   (let ((world (simulation-world new)))
     (setf (map-resident (world-map world)) world)
@@ -157,8 +157,8 @@ in NEW. If its world is resident, make that of NEW resident. Move errors of OLD 
   (let ((current-resident-world-p (not (headless-p old)))
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
     (record-rewind from new)
-    (when current-p (set-variables new old))
-    (when current-resident-world-p (make-resident new))
+    (when current-p (take-over-variables new old))
+    (when current-resident-world-p (make-world-resident new))
     (unless (fork-p old)
       (setf (simulation-environment new) '()
             (simulation-variables new) (simulation-variables old)

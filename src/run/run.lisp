@@ -214,7 +214,7 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
         append (participant-unfinished participant)))
 
 (addition idle-p)
-(defun settled-p (simulation)
+(defun no-work-left-p (simulation)
   "True if nothing in SIMULATION is in progress or waiting. Kickers and tracks do not count."
   (let ((timeline (simulation-timeline simulation)))
     (and (zerop (agenda-pending (timeline-agenda timeline)))
@@ -228,7 +228,7 @@ rate :FREE, kickers wait for a request, too; otherwise millions of ticks would p
   (let ((world (simulation-world simulation)))
     (and (or (and (eq :free (pace simulation)) (live-p simulation))
              (not (or (world-has-kickers-p world) (tracks-in-progress-p world))))
-         (settled-p simulation))))
+         (no-work-left-p simulation))))
 
 ;;; Chance.
 

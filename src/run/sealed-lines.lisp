@@ -96,7 +96,7 @@ Signals an error if LINE is damaged."
 
 ;;; Files.
 
-(defun call-with-saved-text (function file)
+(defun call-with-saved-file (function file)
   "Call FUNCTION with a stream of the octets of FILE, for NEXT-DATA-LINE. Signals an error if FILE
 is not a regular file, or is too long."
   (let ((trouble (unusable-file-text file)))
@@ -108,9 +108,9 @@ is not a regular file, or is too long."
       (funcall function in))))
 
 (defun call-reading-file (function file kind damage)
-  "Call FUNCTION as CALL-WITH-SAVED-TEXT does. Errors other than UNKNOWN-NAME are signalled as an
+  "Call FUNCTION as CALL-WITH-SAVED-FILE does. Errors other than UNKNOWN-NAME are signalled as an
 error of the class DAMAGE that names FILE. KIND is the expected kind of FILE."
-  (handler-case (call-with-saved-text function file)
+  (handler-case (call-with-saved-file function file)
     (unknown-name (trouble) (error trouble))
     (stream-error ()
       (error damage :file file :reason "the operating system does not allow reading it"))

@@ -21,7 +21,7 @@
 (defun container-name (part)
   (and (part-location part) (location-name (part-location part))))
 
-(defun slots-of-own-kind (part)
+(defun kind-specific-slots (part)
   (set-difference (kind-slots (kind-of part))
                   (kind-slots (find 'part (all-kinds) :key #'kind-name))))
 
@@ -31,7 +31,7 @@ slots with the roles :STATE and :MEMORY."))
 
 (defmethod part-status ((part part))
   (list :name (princ-to-string part)
-        :slots (loop for slot in (reverse (slots-of-own-kind part))
+        :slots (loop for slot in (reverse (kind-specific-slots part))
                      when (member (kind-slot-role slot) '(:state :memory))
                        collect (list (kind-slot-name slot)
                                      (funcall (kind-slot-reader slot) part)))))

@@ -60,7 +60,7 @@ recorded at the same point of the new journal."
   "Perform the requests to SIMULATION that were made since the last tick, the oldest first."
   (call-each (lambda (request)
                (when (recording-p simulation)
-                 (destructuring-bind (operator . arguments) (request-entry request)
+                 (destructuring-bind (operator . arguments) (request-journal-entry request)
                    (record-operation simulation operator arguments request)))
                (perform request timeline))
              (take-requests timeline)))
@@ -78,7 +78,7 @@ recorded at the same point of the new journal."
   "Update the records of parts inside things in WORLD, and the tracks and grips."
   (enforce-containment world)
   (update-tracks world)
-  (check-grips world)
+  (end-lost-grips world)
   (setf (world-settled-p world) (every #'settling-skippable-p (world-robots world))))
 
 (declaim (inline extend-journal))

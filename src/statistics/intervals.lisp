@@ -207,7 +207,7 @@ SAMPLE is large (Efron and Tibshirani 1993, formula 14.15)."
                        'doubles))
          (mean (mean-of left)) (squares 0d0) (cubes 0d0)
          (influences (map 'doubles (lambda (value) (- mean value)) left)))
-    (loop for influence across (magnified influences (magnification influences))
+    (loop for influence across (magnified-sample influences (magnification influences))
           do (incf squares (expt influence 2))
              (incf cubes (* (expt influence 2) influence)))
     (if (zerop squares) 0d0 (/ cubes (* 6 (* squares (sqrt squares)))))))

@@ -91,7 +91,7 @@ cubed. The power is 1 unless all numbers of SAMPLE are very small."
         (scale-float 1d0 (min 1000 (- (nth-value 1 (decode-float largest)))))
         1d0)))
 
-(defun magnified (sample factor)
+(defun magnified-sample (sample factor)
   (declare (type doubles sample) (type double-float factor))
   (if (= 1 factor) sample (map 'doubles (lambda (x) (* factor x)) sample)))
 
@@ -99,7 +99,7 @@ cubed. The power is 1 unless all numbers of SAMPLE are very small."
   "SAMPLE, at least two numbers, is from a distribution. Return the estimated standard deviation of
 the mean of SIZE numbers from this distribution."
   (let ((factor (magnification sample)))
-    (/ (sqrt (/ (variance-of (magnified sample factor)) size)) factor)))
+    (/ (sqrt (/ (variance-of (magnified-sample sample factor)) size)) factor)))
 
 ;;; SBCL's SORT takes ten times as long, which would slow a bootstrap of the median.
 

@@ -255,4 +255,4 @@ RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is c
                                (request-name request) (request-asker request)
                                (request-name rival) (request-asker rival))))))
 
-(define-shared interruption)
+(define-shared-types interruption)

@@ -83,14 +83,14 @@ Return the values of BODY."
            ;; If no thread owns the world any more, this one answers the pending questions.
            (call-with-custody custody (constantly nil) (constantly nil))))
 
-(defun keeping-seclusion (function)
+(defun function-with-seclusion (function)
   "Return a function that calls FUNCTION, in any thread, with the seclusion of the current code."
   (let ((seclusion *seclusion*))
     (lambda () (let ((*seclusion* seclusion)) (funcall function)))))
 
 (defun ask-owner (custody function)
   (check-outside-ticks)
-  (let ((question (make-question (keeping-seclusion function))))
+  (let ((question (make-question (function-with-seclusion function))))
     (atomic-push (lambda () (answer-question question)) (custody-questions custody))
     (wake-if-asleep custody)
     (in-any-case
@@ -103,7 +103,7 @@ Return the values of BODY."
 not wait for the result. FUNCTION is called with interrupts deferred, except within
 ALLOWING-INTERRUPTS. Return nothing."
   (let ((custody (timeline-custody (timeline-of object)))
-        (question (make-question (keeping-seclusion function))))
+        (question (make-question (function-with-seclusion function))))
     (deferring-interrupts
       (atomic-push (lambda () (deferring-interrupts (answer-question question)))
                    (custody-questions custody))

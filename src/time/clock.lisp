@@ -24,7 +24,7 @@
 
 (defun paused-without-steps-p (simulation)
   "True if the live SIMULATION is paused, and no requested ticks remain to be passed."
-  (if-paced (pacing simulation) (pause-in-effect-p pacing)))
+  (when-pacing (pacing simulation) (pause-in-effect-p pacing)))
 
 (defun paused-or-stopped-p (pacing)
   (or (pacing-stopping-p pacing) (pause-in-effect-p pacing)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(timeline-thread pacing-thread-p check-rate clock-trouble *waits-while-paused-p*
+(export '(timeline-thread pacing-thread-p check-rate clock-failure-text *user-can-resume-p*
           pass-then-pause pace hog-seconds seconds-now stop-pacing claim-pacing pacing-claimed-p
           unclaim-pacing call-without-clock users-code-in-progress users-code-in-debugger-p
           abort-hog))
@@ -56,19 +56,19 @@ needed. CALLS records the calls of users' code by the thread."
   "Return the real time, on which results must not depend, in seconds since an arbitrary moment."
   (/ (float (get-internal-real-time) 1d0) internal-time-units-per-second))
 
-(defmacro if-paced ((pacing object) &body body)
+(defmacro when-pacing ((pacing object) &body body)
   "If OBJECT's run was ever live, run BODY with PACING bound to its pacing; else return NIL."
   `(let ((,pacing (timeline-pacing (timeline-of ,object))))
      (when ,pacing ,@body)))
 
 (defun timeline-thread (timeline)
   "Return the thread that paces TIMELINE; NIL if there is none, or if the thread was asked to stop."
-  (if-paced (pacing timeline)
+  (when-pacing (pacing timeline)
     (and (not (pacing-stopping-p pacing)) (pacing-thread pacing))))
 
 (defun pacing-thread-p (timeline)
   "True if this thread paces TIMELINE, or was the last thread to pace it."
-  (if-paced (pacing timeline) (eq (current-thread) (pacing-thread pacing))))
+  (when-pacing (pacing timeline) (eq (current-thread) (pacing-thread pacing))))
 
 (addition live-p)
 (defun live-p (&optional (simulation (current-simulation)))
@@ -78,18 +78,18 @@ needed. CALLS records the calls of users' code by the thread."
 (addition paused-p)
 (defun paused-p (&optional (simulation (current-simulation)))
   "True if the live SIMULATION was paused."
-  (if-paced (pacing simulation) (pacing-paused-p pacing)))
+  (when-pacing (pacing simulation) (pacing-paused-p pacing)))
 
-(defvar *waits-while-paused-p* t
+(defvar *user-can-resume-p* t
   "True if an interactive user can resume a paused run while this thread waits.")
 
-(defun clock-trouble (simulation)
+(defun clock-failure-text (simulation)
   "Return a text about the failure that has paused the live SIMULATION, or NIL."
-  (if-paced (pacing simulation) (pacing-trouble pacing)))
+  (when-pacing (pacing simulation) (pacing-trouble pacing)))
 
 (defun pace (simulation)
   "Return the pace of SIMULATION: ticks per second, or :FREE; NIL if SIMULATION was never live."
-  (if-paced (pacing simulation) (pacing-rate pacing)))
+  (when-pacing (pacing simulation) (pacing-rate pacing)))
 
 ;;; Pausing and resuming.
 
@@ -103,7 +103,7 @@ needed. CALLS records the calls of users' code by the thread."
 
 (defun set-paused (simulation paused-p steps)
   "If PAUSED-P is true, pause the live SIMULATION after STEPS more ticks; otherwise resume it."
-  (if-paced (pacing simulation)
+  (when-pacing (pacing simulation)
     (setf (pacing-steps pacing) steps
           (pacing-paused-p pacing) paused-p
           (pacing-trouble pacing) nil)
@@ -129,7 +129,7 @@ needed. CALLS records the calls of users' code by the thread."
   "Set the pace of SIMULATION to RATE, from 0.001 to 1000000 ticks per second, or :FREE. Returns
 RATE. Signals WRONG-ARGUMENT."
   (check-rate rate)
-  (if-paced (pacing simulation)
+  (when-pacing (pacing simulation)
     (setf (pacing-rate pacing) rate)
     (wake-clock pacing))
   rate)
@@ -174,20 +174,20 @@ Signals MISUSE if the thread does not end."
 (defun claim-pacing (timeline)
   "Ask the thread that paces TIMELINE to end after its current tick, because this thread will
 replace the run. Return true if the run was live and no thread had stopped it."
-  (if-paced (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) nil :replaced)))
+  (when-pacing (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) nil :replaced)))
 
 (defun pacing-claimed-p (timeline)
   "True if CLAIM-PACING has returned true for TIMELINE without a later call of UNCLAIM-PACING."
-  (if-paced (pacing timeline) (eq :replaced (pacing-stopping-p pacing))))
+  (when-pacing (pacing timeline) (eq :replaced (pacing-stopping-p pacing))))
 
 (defun unclaim-pacing (timeline)
   "Prevent a run that will replace the stopped run of TIMELINE from becoming live."
-  (if-paced (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) :replaced t)))
+  (when-pacing (pacing timeline) (swap-if-eq (pacing-stopping-p pacing) :replaced t)))
 
 (defun stop-pacing (timeline)
   "End the thread that paces TIMELINE after its current tick. If it is another thread, wait for its
 end. Return TIMELINE. Signals MISUSE if the thread is in users' code that cannot be interrupted."
-  (if-paced (pacing timeline) (stop-pacing-thread pacing))
+  (when-pacing (pacing timeline) (stop-pacing-thread pacing))
   timeline)
 
 (defun call-without-clock (timeline function)
@@ -223,19 +223,19 @@ end. Return TIMELINE. Signals MISUSE if the thread is in users' code that cannot
   "Return two values: a text that names the users' code in the thread of the live SIMULATION, and
 the number of calls of users' code that have begun in this thread. Return NIL if the thread is not
 in users' code, or waits in a debugger."
-  (if-paced (pacing simulation)
+  (when-pacing (pacing simulation)
     (let* ((calls (pacing-calls pacing))
            (origin (and (not (user-calls-waiting-p calls)) (user-calls-origin calls))))
       (and origin (values (text-of-origin origin) (user-calls-count calls))))))
 
 (defun users-code-in-debugger-p (simulation)
   "True if the thread of the live SIMULATION is in users' code that waits in a debugger."
-  (if-paced (pacing simulation)
+  (when-pacing (pacing simulation)
     (let ((calls (pacing-calls pacing)))
       (and (user-calls-origin calls) (user-calls-waiting-p calls) t))))
 
 (defun abort-hog (simulation)
   "If a warning has named users' code of the live SIMULATION that still runs, abort it. True if so."
-  (if-paced (pacing simulation)
+  (when-pacing (pacing simulation)
     (and (eql (pacing-hog pacing) (user-calls-count (pacing-calls pacing)))
          (interrupt-hog pacing))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(request request-entry perform resource count-request phase-number changing-phase-p
+(export '(request request-journal-entry perform resource count-request phase-number changing-phase-p
           notifying-phase-p))
 
 ;;; A request is the name of an operator and its arguments. It waits in a timeline (timeline.lisp)
@@ -25,13 +25,13 @@
   (:documentation
    "Perform REQUEST in the thread of its world, when a tick of TIMELINE begins or the run ends."))
 
-(defgeneric request-entry (request)
+(defgeneric request-journal-entry (request)
   (:documentation "Return the journal entry of REQUEST: a list (operator argument ...).")
   (:method ((request request))
     (cons (request-operator request) (request-arguments request))))
 
 (defmethod digest-state :after ((request request) digest)
-  (digest-add digest (request-entry request)))
+  (digest-add digest (request-journal-entry request)))
 
 ;;; Resources: parts that do one thing at a time (manual 3.1.2).
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(schedule-call interrupt-resources release-resource scheduled))
+(export '(schedule-call interrupt-resources interrupt-resource scheduled))
 
 ;;; Requests for a resource, by SCHEDULE, GRAB-RESOURCE or a command, are performed in the order in
 ;;; which they were made, at the start of the next tick. Of two events of SCHEDULE, the one with the
@@ -85,7 +85,7 @@ Signals WRONG-ARGUMENT for a priority, timer or timeout that is not an integer."
         simulation))
 
 ;; Only in memory: a function cannot be written to a file.
-(defmethod request-entry ((event scheduled))
+(defmethod request-journal-entry ((event scheduled))
   (list 'schedule (scheduled-body event) (event-resource event) (event-priority event)
         (scheduled-on-interrupt event) (scheduled-test event) (scheduled-timeout event)
         (scheduled-timer event)))
@@ -137,7 +137,7 @@ Returns nothing (manual 3.8). See reading 7."
 
 ;;; Taking resources away.
 
-(defgeneric release-resource (resource timeline)
+(defgeneric interrupt-resource (resource timeline)
   (:documentation
    "Interrupt the event pending on RESOURCE, and its background activities. The thread that owns the
 world calls this function inside a tick. A layer with background activities adds a method.")
@@ -154,7 +154,7 @@ world calls this function inside a tick. A layer with background activities adds
          (agenda (timeline-agenda timeline))
          (event (pending-event agenda resource)))
     (when event (note-interruption event grab (1+ (agenda-tick agenda))))
-    (release-resource resource timeline)))
+    (interrupt-resource resource timeline)))
 
 (public grab-resource)
 (defun grab-resource (resource &optional (simulation (current-simulation)))
@@ -168,5 +168,5 @@ track of RESOURCE. Either may be missing. Returns nothing (manual, figure D.3). 
 (defun interrupt-resources (timeline resources)
   "Interrupt everything on RESOURCES, in order, and call the continuations. The thread that owns the
 world of TIMELINE calls this function between ticks."
-  (dolist (resource resources) (release-resource resource timeline))
+  (dolist (resource resources) (interrupt-resource resource timeline))
   (deliver-notifications timeline))

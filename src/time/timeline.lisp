@@ -84,7 +84,7 @@ a part of a robot. Signals WRONG-ARGUMENT for any other object.")
 (defvar *simulation* nil
   "The current simulation: of WITH-SIMULATION, the simulator's thread, or the last SIMULATOR call.")
 
-(setf *reporting-run* (lambda () *simulation*))
+(setf *get-reporting-run* (lambda () *simulation*))
 
 (addition current-simulation)
 (defun current-simulation ()

@@ -34,7 +34,7 @@ the legend. Ways are drawn in this order, too: failed trials, which matter most,
 
 (defconstant +end-opacity+ 8/10 "The opacity of the marker at the end of a way.")
 
-(defun draw-arrows-of (canvas ways)
+(defun draw-arrows-on-ways (canvas ways)
   (draw-way-arrows canvas (loop for way in ways
                             collect (make-way-line 0 (pieces-in-pixels (way-pieces way))
                                                    :color (second (outcome-look way))))))
@@ -114,7 +114,7 @@ WAYS are drawn above robots and things."
     (with-opacity (canvas (map-opacity in-color*))
       (draw-terrain canvas (snapshot-map snapshot) :layers layers))
     (draw-ways canvas ways)
-    (with-opacity (canvas +end-opacity+) (draw-arrows-of canvas ways))
+    (with-opacity (canvas +end-opacity+) (draw-arrows-on-ways canvas ways))
     (loop for (x y) in (start-points ways snapshot)
           do (draw-way-start canvas (to-pixels x) (to-pixels y) black*))
     (draw-movers canvas snapshot (remove :names layers))

@@ -42,7 +42,7 @@ SEVERAL-P is true, texts name the robots."
                                      groups)))))
         (push moment (moment-group-moments group))))))
 
-(defun more-important-p (one other)
+(defun more-important-group-p (one other)
   (if (= (moment-group-weight one) (moment-group-weight other))
       (> (length (moment-group-moments one)) (length (moment-group-moments other)))
       (< (moment-group-weight one) (moment-group-weight other))))
@@ -128,7 +128,7 @@ failed.")
   "Return two values: a list of the numbered spots of MOMENTS, and a list of at most LIMIT notes. A
 note is a list (number text); NUMBER may be NIL. Notes about the user's moments are always included;
 if LIMIT is NIL, so are all others. For SEVERAL-P and REACH see GROUP-MOMENTS."
-  (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-p))
+  (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-group-p))
          (own (count 0 all :key #'moment-group-weight))   ; the user's own have the weight 0
          (count (if limit (min (max limit own) (length all)) (length all)))
          (told (stable-sort (subseq all 0 count) #'<

@@ -116,7 +116,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
                                                 when (hand-holding hand) collect it))
                   (format nil "~@[~(~A~)~]" (robot-last-place robot))))))
 
-(defun write-rows (simulation names out)
+(defun write-robot-rows (simulation names out)
   "Write a row to OUT for each robot of SIMULATION; unless NAMES is NIL, only for the robots NAMES."
   (dolist (robot (simulation-robots simulation))
     (when (or (null names) (member (robot-name robot) names :test #'same-name-p))
@@ -126,7 +126,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
   (write-string (csv-line *trajectory-columns*) out)
   (flet ((look (simulation)
            (when (zerop (mod (simulation-tick simulation) every))
-             (write-rows simulation names out))))
+             (write-robot-rows simulation names out))))
     (call-with-replay (constantly nil) journal :until until :observer #'look :beginning #'look)))
 
 (defun check-trajectory-arguments (file every until robots journal)

@@ -51,7 +51,7 @@ WRONG-ARGUMENT and UNKNOWN-NAME."
 
 ;;; Points.
 
-(defun point-p (point)
+(defun point-or-pair-p (point)
   (or (pt-p point) (number-pair-p point)))
 
 (declaim (inline point-x point-y))
@@ -66,7 +66,7 @@ WRONG-ARGUMENT and UNKNOWN-NAME."
 (defun node-of-point (operator chart point)
   "Return the number of the cell of CHART with POINT. Signals WRONG-ARGUMENT about an argument of
 OPERATOR unless POINT is inside the map."
-  (unless (and (point-p point) (in-map-p (chart-map chart) (point-x point) (point-y point)))
+  (unless (and (point-or-pair-p point) (in-map-p (chart-map chart) (point-x point) (point-y point)))
     (reject-argument operator 'point point
                      (let ((map (chart-map chart)))
                        (format nil "a PT or a list (x y) inside ~A: x from 0 and below ~D, y ~
@@ -78,8 +78,8 @@ OPERATOR unless POINT is inside the map."
 
 (defun cost-of-node (chart node)
   "Return the current cost of a metre in the cell NODE of CHART."
-  (min +barred+ (+ (aref (terrain-cells (chart-terrain chart)) node)
-                   (or (cdr (assoc node (chart-barred chart))) 0d0))))
+  (min +barred-cost+ (+ (aref (terrain-cells (chart-terrain chart)) node)
+                        (or (cdr (assoc node (chart-barred chart))) 0d0))))
 
 (defun set-extra-cost (chart node cost)
   "Set the extra cost of the cell NODE of CHART to COST; remove it if COST is NIL."
@@ -99,7 +99,7 @@ earlier marks of the cell. Return CHART. Signals WRONG-ARGUMENT."
   (check-argument bar-cell cost (or (null cost) (and (realp cost) (<= 0 cost 1000000)))
                   "a cost from 0 to 1e6, or NIL for a cell that cannot be crossed")
   (set-extra-cost chart (node-of-point 'bar-cell chart point)
-                  (cond ((null cost) +barred+)
+                  (cond ((null cost) +barred-cost+)
                         ((zerop cost) nil)
                         (t (double cost))))
   chart)
@@ -126,34 +126,34 @@ extra cost of a metre in the cell, or NIL if the cell cannot be crossed."
   (loop with terrain = (chart-terrain chart)
         for (node . cost) in (chart-barred chart)
         collect (list (node-column terrain node) (node-row terrain node)
-                      (if (< cost +barred+) cost nil))))
+                      (if (< cost +barred-cost+) cost nil))))
 
 (addition crossing-cost)
 (defun crossing-cost (chart point)
   "Return the cost of a metre in the cell of CHART that contains POINT, a PT or a list (x y). The
 cost is 1 or more, or NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT."
   (let ((cost (cost-of-node chart (node-of-point 'crossing-cost chart point))))
-    (if (< cost +barred+) cost nil)))
+    (if (< cost +barred-cost+) cost nil)))
 
 ;;; The field of a goal. All charts of a terrain share one, until they bar a cell.
 
-(defconstant +nodes-kept+ 2000000
+(defconstant +most-cached-nodes+ 2000000
   "The largest number of nodes in all fields that a terrain keeps; two fields are always kept.")
 
-(defun known-field (terrain goal)
+(defun cached-field (terrain goal)
   (find goal (terrain-fields terrain) :key #'field-goal))
 
 (defun discard-oldest-fields (terrain)
   "Discard the oldest fields of TERRAIN, so that there is room for another field."
   (let ((fields (terrain-fields terrain))
-        (most (clamp (floor +nodes-kept+ (length (terrain-cells terrain))) 2 50)))
+        (most (clamp (floor +most-cached-nodes+ (length (terrain-cells terrain))) 2 50)))
     (setf (terrain-fields terrain) (subseq fields 0 (min (length fields) (1- most))))))
 
 (defun shared-field (terrain goal)
   "Return the field of TERRAIN with its goal in the node GOAL. All threads share this field."
-  (or (known-field terrain goal)
+  (or (cached-field terrain goal)
       (with-lock ((terrain-lock terrain))
-        (or (known-field terrain goal)
+        (or (cached-field terrain goal)
             (let ((field (progn (discard-oldest-fields terrain) (make-field terrain goal))))
               (setf (field-lock field) (make-lock "field"))
               (push field (terrain-fields terrain))

@@ -24,9 +24,9 @@ true for a line that needs only free cells, and no distance from walls."
     (or (unless narrow
           (let ((left (ash (1- i) -1)) (right (ash (1+ i) -1))
                 (above (row (1- j))) (below (row (1+ j))))
-            (when (or (>= (cell left above) +barred+) (>= (cell left below) +barred+)
-                      (>= (cell right above) +barred+) (>= (cell right below) +barred+))
-              +barred+)))
+            (when (or (>= (cell left above) +barred-cost+) (>= (cell left below) +barred-cost+)
+                      (>= (cell right above) +barred-cost+) (>= (cell right below) +barred-cost+))
+              +barred-cost+)))
         (cell (ash i -1) (row j)))))
 
 ;; Allocated on the stack and passed to functions instead of floats, which would have to be boxed.
@@ -42,7 +42,7 @@ true for a line that needs only free cells, and no distance from walls."
 (declaim-final line)
 
 (defun measure-line (line cells columns leaving)
-  "Compute and store LINE's cost: +BARRED+ if LINE is not free or costs more than its limit. CELLS
+  "Compute and store LINE's cost: +BARRED-COST+ if LINE is not free or costs more than its limit. CELLS
 belong to a terrain or field of COLUMNS columns. LEAVING is true if LINE may begin near a wall."
   (declare #.*hot* (type line line) (type amounts cells) (type (integer 0 40000) columns))
   (let* ((u (* 2 (line-x line))) (v (* 2 (line-y line)))
@@ -75,7 +75,7 @@ belong to a terrain or field of COLUMNS columns. LEAVING is true if LINE may beg
                     (let ((narrow (or along
                                       (and leaving (= (ash i -1) start-i) (= (ash j -1) start-j)))))
                       (incf sum (* piece (half-cell-cost cells columns i j narrow))))
-                    (when (> sum limit) (return +barred+)))
+                    (when (> sum limit) (return +barred-cost+)))
                   (when (>= next 1d0) (return sum))
                   (setf part (max part next))
                   (if (<= next-u next-v)
@@ -138,7 +138,7 @@ costs COST. The cost to the goal is lower by DROP at the end of the side than at
          (limit (- (descent-value descent) +least-drop+))
          (middle-x (+ (ffloor x) 0.5d0)) (middle-y (+ (ffloor y) 0.5d0))
          (off-x (- x middle-x)) (off-y (- y middle-y))
-         (least +barred+) (best-x 0d0) (best-y 0d0) (best-value 0d0))
+         (least +barred-cost+) (best-x 0d0) (best-y 0d0) (best-value 0d0))
     (declare (type double-float limit least best-x best-y best-value middle-x middle-y))
     (with-field (field)
       (flet ((look (side-x side-y across-x across-y)
@@ -163,14 +163,14 @@ costs COST. The cost to the goal is lower by DROP at the end of the side than at
                    (declare (inline propose))
                    (when (<= start limit) (propose edge 0d0 start))
                    ;; If only the corner is low enough, nothing is known of the points before it.
-                   (when (and (< square +barred+) (<= end limit))
+                   (when (and (< square +barred-cost+) (<= end limit))
                      (if (<= start limit)
                          (let ((part (best-point-on-side ahead aside (- start end) square)))
                            (propose square part (+ start (* part (- end start)))))
                          (propose square 1d0 end)))))))
         (look 1 0 0 1) (look 1 0 0 -1) (look -1 0 0 1) (look -1 0 0 -1)
         (look 0 1 1 0) (look 0 1 -1 0) (look 0 -1 1 0) (look 0 -1 -1 0)))
-    (when (< least +barred+)
+    (when (< least +barred-cost+)
       (setf (descent-x descent) best-x
             (descent-y descent) best-y
             (descent-value descent) best-value
@@ -201,7 +201,7 @@ latest vertex; from there the way leads to (END-X,END-Y), at the cost SINCE."
 
 (declaim (inline free-line-cost))
 (defun free-line-cost (field x y end-x end-y limit leaving)
-  "Return the cost of the straight line from (X,Y) to (END-X,END-Y) on the cells of FIELD; +BARRED+
+  "Return the cost of the straight line from (X,Y) to (END-X,END-Y) on the cells of FIELD; +BARRED-COST+
 if the line is not free, or costs more than LIMIT. If LEAVING, the line may begin near a wall."
   (let ((line (make-line x y end-x end-y limit)))
     (declare (dynamic-extent line))
@@ -218,8 +218,8 @@ if the line is not free, or costs more than LIMIT. If LEAVING, the line may begi
 If LAST, this line ends the way, and may end as near to a wall as a first line may begin."
   (declare (type polyline polyline) (type metres x y) (type double-float limit))
   (let ((from-x (polyline-x polyline)) (from-y (polyline-y polyline)))
-    (or (< (free-line-cost field from-x from-y x y limit (on-first-line-p polyline)) +barred+)
-        (and last (< (free-line-cost field x y from-x from-y limit t) +barred+)))))
+    (or (< (free-line-cost field from-x from-y x y limit (on-first-line-p polyline)) +barred-cost+)
+        (and last (< (free-line-cost field x y from-x from-y limit t) +barred-cost+)))))
 
 (defun extend-polyline (polyline field x y cost last)
   "Extend POLYLINE to (X,Y) by a free step of COST, without a turn if a straight line is as good."
@@ -240,11 +240,12 @@ If LAST, this line ends the way, and may end as near to a wall as a first line m
   (let* ((from-x (polyline-end-x polyline)) (from-y (polyline-end-y polyline))
          (true-cost (free-line-cost field from-x from-y x y cost (on-first-line-p polyline))))
     (declare (type metres from-x from-y))
-    (when (and (>= true-cost +barred+) (not last) (plusp (polyline-since polyline)))
+    (when (and (>= true-cost +barred-cost+) (not last) (plusp (polyline-since polyline)))
       ;; By way of the cell's middle it keeps off all walls.
       (let ((middle-x (+ (ffloor from-x) 0.5d0)) (middle-y (+ (ffloor from-y) 0.5d0)))
         (extend-polyline polyline field middle-x middle-y
-                         (free-line-cost field from-x from-y middle-x middle-y (/ +barred+ 2) nil)
+                         (free-line-cost field from-x from-y middle-x middle-y (/ +barred-cost+ 2)
+                                         nil)
                          nil)))
     (extend-polyline polyline field x y (min cost true-cost) last)))
 

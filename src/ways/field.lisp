@@ -89,7 +89,7 @@ of a metre on the line to the first end, SQUARE the cost of a metre in the squar
 exceeds each cost that it depends on by at least a third."
   (declare (type double-float straight diagonal edge square))
   (let ((drop (- straight diagonal)) (along (+ edge straight)))
-    (if (or (<= drop 0d0) (>= square +barred+))
+    (if (or (<= drop 0d0) (>= square +barred-cost+))
         along
         (let ((slope (min drop edge)))
           (min along
@@ -128,7 +128,8 @@ and CELLS are the cells of the terrain, which must not change."
   (ensure-memory (length (terrain-cells terrain)) 16)
   (let* ((cells (terrain-cells terrain)) (size (length cells))
          (field (%make-field goal (terrain-columns terrain) cells
-                             (make-cost-vector size +barred+) (make-cost-vector size +barred+))))
+                             (make-cost-vector size +barred-cost+)
+                             (make-cost-vector size +barred-cost+))))
     (setf (aref (field-drafts field) goal) 0d0)
     (queue-push (field-queue field) goal 0d0)
     field))
@@ -177,21 +178,21 @@ and CELLS are the cells of the terrain, which must not change."
                 (ignorable #'cell #'total #'edge #'by-side))
        ,@body)))
 
-(declaim (inline best-draft))
-(defun best-draft (field node)
+(declaim (inline compute-draft-cost))
+(defun compute-draft-cost (field node)
   "Return the cost to the goal from NODE, computed from the costs of its neighbours."
   (declare (type field field) (type node node))
   (with-field (field)
     (if (= node (field-goal field))
         0d0
-        (min +barred+
+        (min +barred-cost+
              (by-side node 1 columns) (by-side node 1 (- columns))
              (by-side node -1 columns) (by-side node -1 (- columns))
              (by-side node columns 1) (by-side node columns -1)
              (by-side node (- columns) 1) (by-side node (- columns) -1)))))
 
-(declaim (inline set-draft))
-(defun set-draft (field node draft)
+(declaim (inline set-draft-cost))
+(defun set-draft-cost (field node draft)
   "Set the draft of NODE to DRAFT, and queue NODE if its total differs."
   (declare (type field field) (type node node) (type double-float draft))
   (let ((total (aref (field-totals field) node)))
@@ -199,11 +200,11 @@ and CELLS are the cells of the terrain, which must not change."
     (unless (= draft total)
       (queue-push (field-queue field) node (min draft total)))))
 
-(defun update-draft (field node)
+(defun update-draft-cost (field node)
   (declare #.*hot* (type field field) (type node node))
-  (when (< (aref (field-cells field) node) +barred+)
-    (let ((draft (best-draft field node)))
-      (unless (= draft (aref (field-drafts field) node)) (set-draft field node draft)))))
+  (when (< (aref (field-cells field) node) +barred-cost+)
+    (let ((draft (compute-draft-cost field node)))
+      (unless (= draft (aref (field-drafts field) node)) (set-draft-cost field node draft)))))
 
 (defun lower-neighbours (field node)
   "Update the drafts of the neighbours of NODE, after the total of NODE has become known."
@@ -212,19 +213,19 @@ and CELLS are the cells of the terrain, which must not change."
     (flet ((lower (other draft)
              (declare (type node other) (type double-float draft))
              (when (< draft (aref drafts other))
-               (set-draft field other draft))))
+               (set-draft-cost field other draft))))
       (declare (inline lower))
       (macrolet ((straight (side across)
                    `(let ((other (- node ,side)))
                       (declare (type node other))
-                      (when (and (< (cell other) +barred+)
+                      (when (and (< (cell other) +barred-cost+)
                                  (< (total node) (aref drafts other)))
                         (lower other (min (by-side other ,side ,across)
                                           (by-side other ,side (- ,across)))))))
                  (diagonal (side across)
                    `(let ((other (- node ,side ,across)))
                       (declare (type node other))
-                      (when (and (< (cell other) +barred+)
+                      (when (and (< (cell other) +barred-cost+)
                                  (< (total node) (aref drafts other)))
                         (lower other (min (by-side other ,side ,across)
                                           (by-side other ,across ,side)))))))
@@ -245,7 +246,7 @@ and CELLS are the cells of the terrain, which must not change."
              (declare (type (signed-byte 32) offset))
              (let ((other (+ node offset)))
                (declare (type node other))
-               (when (> (aref drafts other) least) (update-draft field other)))))
+               (when (> (aref drafts other) least) (update-draft-cost field other)))))
       (look 1) (look -1) (look columns) (look (- columns))
       (look (+ columns 1)) (look (- columns 1)) (look (- 1 columns)) (look (- -1 columns)))))
 
@@ -259,28 +260,28 @@ and CELLS are the cells of the terrain, which must not change."
     (cond ((= total draft))             ; It has been processed before.
           ((< draft total)
            (setf (aref totals node) draft)
-           (if (= total +barred+)
+           (if (= total +barred-cost+)
                (lower-neighbours field node)
                (update-neighbours field node draft)))
-          (t (setf (aref totals node) +barred+)
+          (t (setf (aref totals node) +barred-cost+)
              (update-neighbours field node total)
-             (set-draft field node draft)))))
+             (set-draft-cost field node draft)))))
 
 (defun compute-total (field node)
-  "Return NODE's total, after computing all lower totals of FIELD; +BARRED+ if there is no way."
+  "Return NODE's total, after computing all lower totals of FIELD; +BARRED-COST+ if there is no way."
   (declare #.*hot* (type field field) (type node node))
   (let ((queue (field-queue field)) (totals (field-totals field)) (drafts (field-drafts field)))
     (loop until (zerop (queue-count queue))
           do (let ((total (aref totals node)) (draft (aref drafts node))
                    (key (aref (queue-keys queue) 0)))
-               (when (and (= total draft) (>= key total) (< total +barred+)) (return))
+               (when (and (= total draft) (>= key total) (< total +barred-cost+)) (return))
                (let ((first (aref (queue-nodes queue) 0)))
                  (queue-pop queue)
                  (when (= key (min (aref totals first) (aref drafts first)))
                    (process-node field first)))))
     (aref totals node)))
 
-(defun find-total (field node)
+(defun cost-to-goal (field node)
   "Return the cost to the goal of FIELD from NODE, computing it if necessary."
   (let ((lock (field-lock field)))
     (if lock
@@ -292,7 +293,7 @@ and CELLS are the cells of the terrain, which must not change."
 (defun set-cell-cost (field node cost)
   (let ((columns (field-columns field)))
     (setf (aref (field-cells field) node) cost)
-    (when (>= cost +barred+) (set-draft field node +barred+))
+    (when (>= cost +barred-cost+) (set-draft-cost field node +barred-cost+))
     (loop for row in (list (- columns) 0 columns)
           do (loop for offset from (1- row) to (1+ row)
-                   do (update-draft field (+ node offset))))))
+                   do (update-draft-cost field (+ node offset))))))

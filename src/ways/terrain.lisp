@@ -6,14 +6,14 @@
 
 ;;; A metre costs 1 in the open, four times as much nearer to a wall than the clearance, and what
 ;;; the caller says in the cells of named place types. Costs are numbers from 1 up, and
-;;; +BARRED+ for walls. Cells have numbers, row by row, with a margin of walls, one cell wide,
+;;; +BARRED-COST+ for walls. Cells have numbers, row by row, with a margin of walls, one cell wide,
 ;;; around them: so each cell of the map has neighbours on all sides. The number of a cell stands
 ;;; for its middle too, and is called a node then.
 
-(defconstant +barred+ 1d100
+(defconstant +barred-cost+ 1d100
   "A cost above that of any way, for uncrossable cells and for nodes without a known way.")
 
-(defconstant +close-to-wall+ 4d0
+(defconstant +near-wall-cost+ 4d0
   "The cost of a metre in cells nearer to a wall than the clearance.")
 
 (deftype node () '(unsigned-byte 31))
@@ -42,7 +42,7 @@ never modified" :writable)
   (print-unreadable-object (terrain stream :type t)
     (format stream "of ~A" (map-name (terrain-map terrain)))))
 
-(define-shared terrain)
+(define-shared-types terrain)
 
 ;;; Keeping them.
 
@@ -52,7 +52,7 @@ never modified" :writable)
 (define-global **terrains-lock** (make-lock "terrains")
   "A lock that is held while a terrain is made, so that no other thread makes the same terrain.")
 
-(defconstant +terrains-kept+ 8
+(defconstant +most-cached-terrains+ 8
   "The number of terrains that are kept for one map, with different clearances and costs.")
 
 (defun discard-all-fields ()
@@ -89,15 +89,15 @@ never modified" :writable)
 ;;; Making one.
 
 (defun free-cell-costs (map columns)
-  "Return a vector of costs of MAP's cells and a margin: 1 if free, +BARRED+ in walls and margin."
-  (let ((cells (make-cost-vector (* columns (+ 2 (map-height map))) +barred+)) (index 0))
+  "Return a vector of costs of MAP's cells and a margin: 1 if free, +BARRED-COST+ in walls and margin."
+  (let ((cells (make-cost-vector (* columns (+ 2 (map-height map))) +barred-cost+)) (index 0))
     (dotimes (y (map-height map) cells)
       (dotimes (x (map-width map))
         (unless (logtest +wall+ (aref (map-flags map) index))
           (setf (aref cells (+ 1 x (* columns (1+ y)))) 1d0))
         (incf index)))))
 
-(defun offsets-within (clearance columns)
+(defun clearance-offsets (clearance columns)
   "Return a list of (dx offset) for the cells whose middles are less than CLEARANCE from a wall's
 cell. OFFSET is the number of such a cell minus the number of the wall's cell."
   (flet ((gap (d) (max 0 (- (abs d) 1/2))))
@@ -113,19 +113,20 @@ cell. OFFSET is the number of such a cell minus the number of the wall's cell."
   (loop for row in (list (- columns) 0 columns)
         thereis (loop for offset from (1- row) to (1+ row)
                       for other = (+ node offset)
-                      thereis (and (< -1 other (length cells)) (< (aref cells other) +barred+)))))
+                      thereis (and (< -1 other (length cells))
+                                   (< (aref cells other) +barred-cost+)))))
 
 (defun raise-costs-near-walls (cells columns clearance)
   (declare (type amounts cells))
-  (let ((offsets (offsets-within clearance columns)))
+  (let ((offsets (clearance-offsets clearance columns)))
     (dotimes (node (length cells))
-      (when (and (= +barred+ (aref cells node)) (next-to-free-cell-p cells columns node))
+      (when (and (= +barred-cost+ (aref cells node)) (next-to-free-cell-p cells columns node))
         (loop for (dx offset) in offsets
               for other = (+ node offset)
               when (and (< -1 other (length cells))
                         (< -1 (+ dx (mod node columns)) columns)
                         (= 1d0 (aref cells other)))
-                do (setf (aref cells other) +close-to-wall+))))
+                do (setf (aref cells other) +near-wall-cost+))))
     cells))
 
 (defun set-place-costs (cells columns map costs)
@@ -150,7 +151,7 @@ cell. OFFSET is the number of such a cell minus the number of the wall's cell."
     (set-place-costs cells columns map costs)
     (%make-terrain map (map-places map) clearance costs columns cells)))
 
-(defun known-terrain (map clearance costs)
+(defun cached-terrain (map clearance costs)
   (find-if (lambda (terrain)
              (and (eq (terrain-places terrain) (map-places map))
                   (= clearance (terrain-clearance terrain))
@@ -162,13 +163,13 @@ cell. OFFSET is the number of such a cell minus the number of the wall's cell."
          (others (remove (map-places map) (gethash map **terrains**)
                          :key #'terrain-places :test-not #'eq)))
     (setf (gethash map **terrains**)
-          (cons terrain (subseq others 0 (min (length others) (1- +terrains-kept+)))))
+          (cons terrain (subseq others 0 (min (length others) (1- +most-cached-terrains+)))))
     terrain))
 
 (defun terrain-for-map (map clearance costs)
   "Return the terrain of the current state of MAP, for CLEARANCE in metres and COSTS, a list of
 (name cost) with double-float costs. Equal arguments return the same terrain while it is kept."
-  (or (known-terrain map clearance costs)
+  (or (cached-terrain map clearance costs)
       (with-lock (**terrains-lock**)
-        (or (known-terrain map clearance costs)
+        (or (cached-terrain map clearance costs)
             (cache-terrain (make-terrain map clearance costs))))))

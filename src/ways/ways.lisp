@@ -9,7 +9,7 @@
 
 (defun crossable-cell-p (chart x y)
   (and (in-map-p (chart-map chart) x y)
-       (< (cost-of-node chart (cell-node (chart-terrain chart) x y)) +barred+)))
+       (< (cost-of-node chart (cell-node (chart-terrain chart) x y)) +barred-cost+)))
 
 (defun nearest-free-middle (chart x y)
   "Return the middle of the nearest cell to (X,Y) that can be crossed, as two values; NIL if there
@@ -40,7 +40,7 @@ is none within +FREE-POINT-DISTANCE+ columns and rows."
   "Return POINT, as a PT, if its cell on CHART can be crossed. Otherwise return the middle of the
 nearest such cell, up to five cells away, or NIL. POINT is a PT or a list (x y), perhaps outside the
 map. CHART may be a map or a map's name. Signals WRONG-ARGUMENT."
-  (check-argument nearest-free-point point (point-p point) "a PT or a list (x y)")
+  (check-argument nearest-free-point point (point-or-pair-p point) "a PT or a list (x y)")
   (multiple-value-bind (x y) (nearest-free-coordinates (ensure-chart 'nearest-free-point chart)
                                                        (point-x point) (point-y point))
     (and x (make-pt x y))))
@@ -70,8 +70,8 @@ map. CHART may be a map or a map's name. Signals WRONG-ARGUMENT."
   "Return a list of the points after (X,Y) on the way to (GOAL-X,GOAL-Y) on CHART; () if there is no
 way. Both points are free. UNTIL and TURNS are arguments of TRACE-WAY."
   (let* ((field (field-for-goal chart (node-at chart goal-x goal-y)))
-         (total (find-total field (node-at chart x y))))
-    (when (< total +barred+)
+         (total (cost-to-goal field (node-at chart x y))))
+    (when (< total +barred-cost+)
       (let ((polyline (make-polyline x y)))
         (trace-way polyline (make-descent field x y total) goal-x goal-y until turns)
         (nreverse (polyline-points polyline))))))
@@ -115,14 +115,14 @@ sum of the way's metres, each times the CROSSING-COST at its place. Return NIL i
 Signals WRONG-ARGUMENT. See FIND-WAY."
   (let ((chart (ensure-chart 'way-cost chart)))
     (with-free-endpoints (way-cost chart start goal)
-      (let ((total (find-total (field-for-goal chart (node-at chart goal-x goal-y))
-                               (node-at chart x y))))
-        (and (< total +barred+) total)))))
+      (let ((total (cost-to-goal (field-for-goal chart (node-at chart goal-x goal-y))
+                                 (node-at chart x y))))
+        (and (< total +barred-cost+) total)))))
 
 (addition way-length)
 (defun way-length (way)
   "Return the length of WAY, a list of PTs or of lists (x y), in metres. Signals WRONG-ARGUMENT."
-  (check-argument way-length way (and (proper-list-p way) (every #'point-p way))
+  (check-argument way-length way (and (proper-list-p way) (every #'point-or-pair-p way))
                   "a list of PTs, or of lists (x y)")
   (loop for (point next) on way
         while next
@@ -137,5 +137,5 @@ metre to a wall or enters a cell that cannot be crossed. Signals WRONG-ARGUMENT.
   (let ((chart (ensure-chart 'straight-cost chart)))
     (with-free-endpoints (straight-cost chart start goal)
       (let ((cost (free-line-cost (field-for-goal chart (node-at chart goal-x goal-y))
-                                  x y goal-x goal-y (/ +barred+ 2) t)))
-        (and (< cost +barred+) cost)))))
+                                  x y goal-x goal-y (/ +barred-cost+ 2) t)))
+        (and (< cost +barred-cost+) cost)))))

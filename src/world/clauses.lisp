@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(number-pair-p check-options check-name call-for-value))
+(export '(number-pair-p check-options check-name call-clause-code))
 
 (defun check-options (definition options known)
   "Signal MALFORMED-DEFINITION unless OPTIONS is a plist with keys among KNOWN, each once."
@@ -35,7 +35,7 @@
     (reject-clause definition name
                    (format nil "a symbol, but no keyword, as the name of the ~A" what))))
 
-(defun call-for-value (function definition clause expected)
+(defun call-clause-code (function definition clause expected)
   "Return the value of FUNCTION, which runs code of CLAUSE. If the code signals an error, signal
 MALFORMED-DEFINITION about DEFINITION, with the text EXPECTED."
   (handler-case (funcall function)

@@ -94,8 +94,8 @@ MALFORMED-DEFINITION for invalid contents."
                                            (cddr content)))))
       (clause-recipe definition clause name (evaluated-descriptor name descriptor)
                      :prototype (and prototype
-                                     (call-for-value #'value definition clause
-                                                     "a prototype: a form whose value is a thing"))
+                                     (call-clause-code #'value definition clause
+                                                       "a prototype: a form whose value is a thing"))
                      :kickers kickers :x x :y y
                      :contents (append-clause-results #'inside contents
                                                       (- (length clause) (length contents)))))))
@@ -177,7 +177,7 @@ cache. Worlds of MAP see the change at once. Return the map."
     (let ((parts (append-clause-results #'parts (without-docstring clauses)
                                         (if (stringp (first clauses)) 4 3))))
       (setf (map-things map) (remove-if-not #'recipe-p parts)
-            (map-attribute-names map) (attribute-names (map-things map))
+            (map-attribute-names map) (recipe-attribute-names (map-things map))
             (map-clauses map) (remove-if #'recipe-p parts)))))
 
 (defun define-map (name width height &key cache (frame '(1 0 0 0)) clauses code
@@ -207,7 +207,7 @@ author writes in. Return the map."
     (reject-clause definition (list :frame frame)
                    "(:frame (size x y yaw)): four numbers from -1e9 to 1e9, the first positive")))
 
-(defun check-size (definition name size)
+(defun check-map-head (definition name size)
   (check-name definition name "map")
   (unless (and (proper-list-p size) (<= 2 (length size))
                (typep (first size) '(integer 1 32767)) (typep (second size) '(integer 1 32767)))
@@ -217,7 +217,7 @@ author writes in. Return the map."
   (check-frame definition (getf (cddr size) :frame '(1 0 0 0))))
 
 (defun map-forms (name size clauses)
-  (check-size (definition-title "defmap" name) name size)
+  (check-map-head (definition-title "defmap" name) name size)
   (destructuring-bind (width height &key cache (frame '(1 0 0 0))) size
     (let ((map (%make-map :name name :width width :height height)))
       `((define-map ',name ,width ,height

@@ -42,7 +42,7 @@
 
 ;;; Chance.
 
-(defun redraw-gap-if-needed (group dice)
+(defun resample-gap-if-needed (group dice)
   "Draw the next gap of GROUP again if TICK-QUANTUM* has changed."
   (unless (eql (group-quantum group) tick-quantum*)
     (let ((p (per-tick-probability (group-probability group))))
@@ -102,8 +102,8 @@
 
 ;;; Running.
 
-(declaim (inline test-holds-p))
-(defun test-holds-p (kicker test thing)
+(declaim (inline kicker-test-true-p))
+(defun kicker-test-true-p (kicker test thing)
   "Call TEST, the test of KICKER, with THING. Record the result in KICKER and return it."
   (cond ((funcall (the function test) thing)
          (or (eq t (kicker-test-outcome kicker)) (setf (kicker-test-outcome kicker) t)))
@@ -114,7 +114,7 @@
 
 (defun run-member (kicker thing)
   (let ((test (kicker-test kicker)))
-    (when (or (null test) (test-holds-p kicker test thing))
+    (when (or (null test) (kicker-test-true-p kicker test thing))
       (funcall (the function (kicker-body kicker)) thing))))
 
 (defun rerun-member (origin)
@@ -193,7 +193,7 @@ it is retried. In a large group, memory is read ahead if the first member to run
       (run-members-despite-errors group end dice tick))))
 
 (defun run-group (group dice tick)
-  (redraw-gap-if-needed group dice)
+  (resample-gap-if-needed group dice)
   (let ((end (group-count group)))
     (unwind-protect (run-members-despite-errors group end dice tick)
       (decf (group-skip group) end)
@@ -279,8 +279,8 @@ that tick ATTACHMENT has no trial (manual 5.3.1). Return nothing. See reading 17
   world)
 
 ;; An origin without an attachment is a group that was read ahead.
-(defmethod recurring-code ((origin origin))
-  (recurring-code (origin-attachment origin)))
+(defmethod recurring-function ((origin origin))
+  (recurring-function (origin-attachment origin)))
 
-(defmethod recurring-remedy ((origin origin))
-  (recurring-remedy (origin-attachment origin)))
+(defmethod stop-recurring-remedy ((origin origin))
+  (stop-recurring-remedy (origin-attachment origin)))

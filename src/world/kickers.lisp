@@ -235,7 +235,7 @@ once in the file of WORLD's map, or the kicker is from another file."
     (if file
         (not (and map-entry
                   (equal file (source-file (entry-source map-entry)))
-                  (eql 1 (count-in-file (name-string name) file))))
+                  (eql 1 (word-count-in-file (name-string name) file))))
         (code-refers-to-p name (symbol-package name)))))
 
 (defun warn-of-unused-kicker (entry world)
@@ -278,10 +278,10 @@ once in the file of WORLD's map, or the kicker is from another file."
           ((eq kicker (find-kicker (kicker-name kicker) nil)) "by DEFKICKER")
           (t "by PUT-KICKER"))))
 
-(defmethod recurring-code ((attachment attachment))
+(defmethod recurring-function ((attachment attachment))
   (kicker-body (attachment-kicker attachment)))
 
-(defmethod recurring-remedy ((attachment attachment))
+(defmethod stop-recurring-remedy ((attachment attachment))
   (let ((name (attachment-name attachment)))
     (format nil "Correct the kicker ~A ~A; or remove it: (put-kicker ~(~A~) (thing (find-thing ~
                  \"~A\")))."

@@ -12,7 +12,7 @@
 
 (defconstant +cache-magic+ #x4152534D41503031
   "The first word of a cache, ARSMAP01 in ASCII, which changes with the layout of the file.")
-(defconstant +cache-header+ 5 "How many words come before the cells.")
+(defconstant +cache-header-size+ 5 "How many words come before the cells.")
 
 (deftype words () '(simple-array (unsigned-byte 64) (*)))
 
@@ -31,7 +31,7 @@
   (let ((sum 1))
     (declare (type (unsigned-byte 64) sum))
     (loop for index from 1 below (length words)
-          unless (= index (1- +cache-header+))
+          unless (= index (1- +cache-header-size+))
             do (setf sum (ldb (byte 64 0) (+ (* sum #x100000001B3) (aref words index)))))
     sum))
 
@@ -39,9 +39,9 @@
 
 (defun map-words (map key)
   (let* ((walls (count-if #'plusp (map-flags map))) (places (count-if #'plusp (map-places map)))
-         (words (make-array (+ +cache-header+ (* 2 (+ walls places)))
+         (words (make-array (+ +cache-header-size+ (* 2 (+ walls places)))
                             :element-type '(unsigned-byte 64)))
-         (position +cache-header+))
+         (position +cache-header-size+))
     (flet ((add (number index value)
              (setf (aref words position) (logior index (ash number 32))
                    (aref words (1+ position)) (double-to-bits value))
@@ -51,7 +51,7 @@
       (loop for number across (map-places map) for index from 0
             when (plusp number) do (add number index (aref (map-directions map) index))))
     (replace words (list +cache-magic+ key walls places))
-    (setf (aref words (1- +cache-header+)) (words-checksum words))
+    (setf (aref words (1- +cache-header-size+)) (words-checksum words))
     words))
 
 (defun write-words (words path)
@@ -80,10 +80,10 @@
         (read-sequence words in)
         words))))
 
-(defun cache-problem (words key)
-  (cond ((or (< (length words) +cache-header+) (/= (aref words 0) +cache-magic+)) "is damaged")
+(defun cache-problem-text (words key)
+  (cond ((or (< (length words) +cache-header-size+) (/= (aref words 0) +cache-magic+)) "is damaged")
         ((/= (aref words 1) key) "is stale")
-        ((or (/= (length words) (+ +cache-header+ (* 2 (+ (aref words 2) (aref words 3)))))
+        ((or (/= (length words) (+ +cache-header-size+ (* 2 (+ (aref words 2) (aref words 3)))))
              (/= (aref words 4) (words-checksum words)))
          "is damaged")))
 
@@ -102,8 +102,8 @@
   "Fill the empty grid of MAP from WORDS. Signals an error if WORDS describe no grid."
   (clear-walls map)
   (clear-places map)
-  (let ((walls-end (+ +cache-header+ (* 2 (aref words 2)))))
-    (loop for position from +cache-header+ below (length words) by 2
+  (let ((walls-end (+ +cache-header-size+ (* 2 (aref words 2)))))
+    (loop for position from +cache-header-size+ below (length words) by 2
           do (restore-cell map (< position walls-end)
                            (ldb (byte 32 0) (aref words position))
                            (ldb (byte 32 32) (aref words position))
@@ -118,7 +118,7 @@
           (and (= 1 (read-sequence words in))
                (= +cache-magic+ (aref words 0)))))))
 
-(defun foreign-cache-p (path)
+(defun non-cache-file-p (path)
   "True if the file PATH exists but is not known to be a map cache, whole or damaged."
   (and (ignore-errors (probe-file path))
        (not (ignore-errors (and (regular-file-p path) (begins-as-cache-p path))))))
@@ -130,9 +130,10 @@
 (defun restore-from-cache (map path key)
   (handler-case
       ;; Each cell is a wall, or a place, or both.
-      (let ((words (read-words path (+ +cache-header+ (* 4 (map-width map) (map-height map))))))
+      (let ((words (read-words path
+                               (+ +cache-header-size+ (* 4 (map-width map) (map-height map))))))
         (when words
-          (let ((trouble (cache-problem words key)))
+          (let ((trouble (cache-problem-text words key)))
             (if trouble
                 (warn-of-cache map path trouble)
                 (restore-map map words)))))
@@ -162,7 +163,7 @@
   (let ((path (and (notany #'place-type-checker (registry-objects *place-types*))
                    (map-cache map))))
     (cond ((null path) nil)
-          ((foreign-cache-p path)
+          ((non-cache-file-p path)
            (warning-set "The file " (native-name path)
                         " is no map cache and is left as it is; " (map-name map)
                         " is not kept. Give :cache another name.")

@@ -66,7 +66,7 @@ reported as mistakes of CLAUSE."
   (when (< 50 depth)
     (reject-clause (map-title map) clause "a clause whose expansion ends within 50 steps"))
   (pushnew (clause-kind-name kind) (map-clause-kinds map))
-  (handler-case (call-for-value
+  (handler-case (call-clause-code
                  (lambda ()
                    (loop for other in (clause-value :clauses map clause kind)
                          append (parts-of-clause map other (1+ depth))))

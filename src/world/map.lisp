@@ -4,7 +4,7 @@
 
 (export '(map-replaced map-reference-form map-index point-index +wall+ +obsmove+ +obsview+
                        +occupied+
-          +opaque+ cell *maps* find-map-argument walk-cells-on-line cell-number grid-size
+          +opaque+ cell *maps* find-map-argument walk-cells-on-line column-or-row grid-size
           +infinite-distance+
           +no-limit+))
 
@@ -152,7 +152,7 @@ symbol whose value is no map, such as ROOM, is the name of a map."
   (point-index map (double x) (double y)))
 
 ;; As reading 53 says.
-(defun filled-at-p (map x y)
+(defun filled-cell-at-p (map x y)
   (let ((index (cell-index-at map x y)))
     (or (null index) (logtest +wall+ (aref (map-flags map) index)))))
 
@@ -197,7 +197,7 @@ Signals WRONG-ARGUMENT unless X and Y are numbers from -1e9 to 1e9."
 (addition cell-filled?)
 (defun cell-filled? (cell)
   "True if CELL is a wall; all cells outside the map count as walls (manual 5.1.1)."
-  (filled-at-p (cell-map cell) (cell-x cell) (cell-y cell)))
+  (filled-cell-at-p (cell-map cell) (cell-x cell) (cell-y cell)))
 
 (addition cell-substance-type)
 (defun cell-substance-type (cell)
@@ -222,7 +222,7 @@ CELL than after it. WIDTH and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
         (left (- (cell-x cell) (floor width 2)))
         (top (- (cell-y cell) (floor height 2))))
     (loop for y from top repeat height
-          collect (loop for x from left repeat width collect (filled-at-p map x y)))))
+          collect (loop for x from left repeat width collect (filled-cell-at-p map x y)))))
 
 ;;; Driving, sight, scans and the display all walk here (a digital differential analyser), so a
 ;;; line meets the same cells for each. Distances along it are in lengths of its direction. All is
@@ -237,8 +237,8 @@ CELL than after it. WIDTH and HEIGHT are at most 1000. Signals WRONG-ARGUMENT."
   "A number of columns or rows of a grid."
   '(unsigned-byte 15))
 
-(declaim (inline cell-number border-spacing distance-to-border walk-cells-on-line))
-(defun cell-number (coordinate)
+(declaim (inline column-or-row border-spacing distance-to-border walk-cells-on-line))
+(defun column-or-row (coordinate)
   "Return the column or row of a grid that contains COORDINATE, in metres."
   (the grid-size (truncate (the (double-float 0d0 32767d0) coordinate))))
 
@@ -263,7 +263,7 @@ distance at which the walk stops. At a corner the line enters the cell in the ne
 the constant COLUMN-FIRST is true, the cell in the next column."
   (declare (type function visit) (type grid-size width height reach)
            (type double-float x y dx dy))
-  (let* ((cell-x (cell-number x)) (cell-y (cell-number y))
+  (let* ((cell-x (column-or-row x)) (cell-y (column-or-row y))
          (back-x (minusp dx)) (back-y (minusp dy))
          (step-x (if back-x -1 1)) (step-y (if back-y (- width) width))
          (left-x (min reach (if back-x cell-x (- width cell-x 1))))

@@ -79,7 +79,7 @@ rule in RULES that fits the code, or 0. No match form in RULES is larger than 3 
     (loop for row in form for cy from (- y (floor height 2))
           always (loop for entry in row for cx from (- x (floor width 2))
                        always (or (eq entry :any)
-                                  (eq entry (filled-at-p map cx cy)))))))
+                                  (eq entry (filled-cell-at-p map cx cy)))))))
 
 ;;; Place types rank by when they were first defined, unless they say :BEFORE: a cell that could
 ;;; be of several is of the first. Redefining a type keeps its rank and changes the type itself:

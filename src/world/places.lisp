@@ -284,7 +284,7 @@ and true if no type was left out (reading 70)."
       (dolist (code (codes-of-rule rule))
         (pushnew (or (first-type-for-code code types) (return-from covering-types '())) takers)))))
 
-(defun warn-if-covered (definition type)
+(defun warn-of-covered-type (definition type)
   "Warn if each cell that fits TYPE is a place of a type defined before TYPE."
   (let* ((types (registry-objects *place-types*))
          (rules (remove-if #'rule-needs-wall-p (place-type-rules type)))
@@ -300,4 +300,4 @@ and true if no type was left out (reading 70)."
 (defun warn-of-useless-rules (definition type)
   (mapc (lambda (rule) (warn-of-rule-needing-wall definition rule))
         (remove-if-not #'rule-needs-wall-p (place-type-rules type)))
-  (warn-if-covered definition type))
+  (warn-of-covered-type definition type))

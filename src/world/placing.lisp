@@ -19,14 +19,14 @@
   (declare (type world world) (type cell-index index))
   (let ((flags (world-flags world)))
     (setf (aref flags index) (logior (logand +wall+ (aref flags index))
-                                     (marks-of-cell index (world-stock world))))))
+                                     (cell-thing-flags index (world-stock world))))))
 
 (defun record-thing-flags (thing stock)
   (setf (aref (stock-marks stock) (thing-rank thing)) (thing-flags thing)))
 
 (defun take-from-floor (thing)
   (declare #.*hot* (type thing thing))
-  (let ((world (thing-world thing)) (index (thing-index thing)))
+  (let ((world (thing-world thing)) (index (thing-cell-index thing)))
     (take-from-cell (thing-rank thing) index (world-stock world))
     (refresh-cell-flags world index)))
 
@@ -38,7 +38,7 @@
 (defun put-on-floor (thing x y)
   (declare #.*hot* (type thing thing) (type double-float x y))
   (setf (thing-x thing) x (thing-y thing) y (thing-location thing) :floor)
-  (let* ((world (thing-world thing)) (stock (world-stock world)) (index (thing-index thing)))
+  (let* ((world (thing-world thing)) (stock (world-stock world)) (index (thing-cell-index thing)))
     (record-thing-flags thing stock)
     (append-to-cell (thing-rank thing) index stock)
     (add-flags (thing-rank thing) index world)))
@@ -56,9 +56,9 @@
 (declaim (inline move-on-floor))
 (defun move-on-floor (thing x y)
   (declare (type double-float x y))
-  (let ((from (thing-index thing)))
+  (let ((from (thing-cell-index thing)))
     (setf (thing-x thing) x (thing-y thing) y)
-    (move-between-cells (thing-rank thing) (thing-world thing) from (thing-index thing))))
+    (move-between-cells (thing-rank thing) (thing-world thing) from (thing-cell-index thing))))
 
 (defun remove-from-location (thing)
   (let ((location (thing-location thing)))
@@ -81,7 +81,7 @@
 Check only the position, and do not call the move watchers. Return THING."
   (if (eq location :floor)
       (let ((x (double x)) (y (double y)))
-        (check-inside 'place-thing (world-map (thing-world thing)) x y)
+        (check-inside-map 'place-thing (world-map (thing-world thing)) x y)
         (move-to-floor thing x y))
       (progn
         (remove-from-location thing)
@@ -100,7 +100,7 @@ such warning about WHAT in a run is also printed if no program reads it."
     (queue-message-items :warning (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
                          :notable-p (first-warning-for-key-p (list :in-wall what) world))))
 
-(defun check-inside (operator map x y)
+(defun check-inside-map (operator map x y)
   (unless (and (sane-number-p x) (sane-number-p y) (map-index map x y))
     (reject-argument operator "position" (list x y)
                      (format nil "a point of ~A, which is ~D by ~D metres"
@@ -156,8 +156,8 @@ things, and a container put into itself. Return THING."
   (let ((position (cond (y-p (list location y))
                         ((number-pair-p location) location))))
     (if position
-        (check-inside 'move-thing (world-map (thing-world thing)) (first position)
-                      (second position))
+        (check-inside-map 'move-thing (world-map (thing-world thing)) (first position)
+                          (second position))
         (check-holder 'move-thing thing location))
     (changing ((thing-world thing) move-thing thing (or position location))
       (if position
@@ -268,7 +268,7 @@ to its start. Return NIL if no cell is empty."
           (call-move-watchers thing old :floor)
           t)))))
 
-(defun kick-by-numbers (thing dx dy kick-if-wall)
+(defun check-and-kick-thing (thing dx dy kick-if-wall)
   (check-argument kick-thing thing (thing-p thing) (argument-type-text 'thing thing))
   (check-argument kick-thing dx (sane-number-p dx) (argument-type-text 'number dx))
   (check-argument kick-thing dy (sane-number-p dy) (argument-type-text 'number dy))
@@ -306,7 +306,7 @@ Return NIL if THING is inside something closed, or is destroyed (reading 172)."
                      (apply-kick-if-allowed thing kick kick-if-wall))
                    :otherwise)))
     (if (eq moved :otherwise)
-        (kick-by-numbers thing dx dy kick-if-wall)
+        (check-and-kick-thing thing dx dy kick-if-wall)
         moved)))
 
 (define-operator 'kick-thing '(thing number number truth) #'kick-thing)

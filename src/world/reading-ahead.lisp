@@ -13,8 +13,8 @@
 (deftype batch () '(simple-vector #.+batch-size+))
 (deftype batch-count () '(integer 0 #.+batch-size+))
 
-(declaim (inline cell-to-read))
-(defun cell-to-read (thing)
+(declaim (inline cell-index-or-zero))
+(defun cell-index-or-zero (thing)
   "Return the index of the cell that THING is in, or 0 if THING is not on the floor."
   (declare (type thing thing))
   (or (and (eq :floor (thing-location thing))
@@ -30,7 +30,7 @@ these elements. Return a meaningless number, so that the compiler keeps the read
     (declare (type (unsigned-byte 32) sum))
     (dotimes (i count)
       (let ((thing (svref batch i)))
-        (setf (svref batch i) (if thing (cell-to-read thing) 0))
+        (setf (svref batch i) (if thing (cell-index-or-zero thing) 0))
         (when thing (setf sum (logxor sum (aref nexts (thing-rank (the thing thing))))))))
     (dotimes (i count)
       (let ((index (svref batch i)))

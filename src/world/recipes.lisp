@@ -80,11 +80,11 @@ DESCRIPTOR, and with the recipes CONTENTS added (reading 58). Signals WRONG-ARGU
                     (member kicker (recipe-kickers recipe) :key (lambda (it) (find-kicker it nil))))
                   (map-things map)))
 
-(defun attribute-names (recipes)
+(defun recipe-attribute-names (recipes)
   (remove-duplicates
    (loop for recipe in recipes
          append (mapcar #'first (recipe-attributes recipe))
-         append (attribute-names (recipe-contents recipe)))))
+         append (recipe-attribute-names (recipe-contents recipe)))))
 
 ;;; Worlds.
 
@@ -112,7 +112,7 @@ robots at their starts. The timeline and the move watchers stay. Return WORLD."
   (reset-world (%make-world (find-map map)) :seed seed))
 
 ;;; Objects of maps and definitions are shared.
-(define-shared map cell substance attribute place-type place rule recipe)
+(define-shared-types map cell substance attribute place-type place rule recipe)
 
 ;;; Making things on the fly (manual 5.3).
 
@@ -128,7 +128,7 @@ robots at their starts. The timeline and the move watchers stay. Return WORLD."
         ((and (proper-list-p location) (= 3 (length location)))
          (destructuring-bind (map x y) location
            (let ((world (current-world map)))
-             (check-inside 'new-thing (world-map world) x y)
+             (check-inside-map 'new-thing (world-map world) x y)
              (values world :floor x y))))
         ((consp location)
          (reject-argument 'new-thing "location" location
@@ -136,7 +136,7 @@ robots at their starts. The timeline and the move watchers stay. Return WORLD."
         (t (values (check-holder 'new-thing nil location) location))))
 
 ;; What is noted is independent of later changes to a prototype, or to a map's name.
-(defun journal-location (location world)
+(defun location-for-journal (location world)
   (if (and (consp location) (not (eq :with (first location))))
       (cons (world-map world) (rest location))
       location))
@@ -160,7 +160,7 @@ UNKNOWN-NAME, and MISUSE for a hand that holds something."
       (if world
           (warn-once-of-misspellings name descriptor world)
           (warn-of-misspellings "new-thing" name descriptor))
-      (changing (world make-new-thing name (journal-location location world)
+      (changing (world make-new-thing name (location-for-journal location world)
                        (recipe-attributes recipe)
                        :contents (recipe-contents recipe) :kickers (recipe-kickers recipe))
         (let ((thing (follow-recipe recipe world)))
@@ -169,13 +169,13 @@ UNKNOWN-NAME, and MISUSE for a hand that holds something."
                 (place (place-thing thing place x y)))
           thing)))))
 
-(defun make-thing-again (name location descriptor &rest more)
+(defun make-thing-in-replay (name location descriptor &rest more)
   "Make a thing as MAKE-NEW-THING does, but only in the current world."
   (unless (eq *world* (resolve-location location))
     (reject-argument 'make-new-thing "location" location "a location in the world of this run"))
   (apply #'call-with-values-as-data #'make-new-thing name location descriptor more))
 
-(define-operator 'make-new-thing '(name datum datum) #'make-thing-again :rest 'datum)
+(define-operator 'make-new-thing '(name datum datum) #'make-thing-in-replay :rest 'datum)
 
 (defun destroyed-thing (serial world)
   "Return a placeholder for the destroyed thing SERIAL of WORLD; NIL if WORLD never had this thing."

@@ -73,7 +73,7 @@ MET yet. Add the tags to MET."
 
 (defun check-thing-on-floor (thing index world)
   (must-hold (and (map-index (world-map world) (thing-x thing) (thing-y thing))
-                  (= index (thing-index thing)))
+                  (= index (thing-cell-index thing)))
              "~A is not in the cell where it is listed" thing)
   (must-hold (= (thing-flags thing) (aref (stock-marks (world-stock world)) (thing-rank thing)))
              "the recorded flags of ~A are wrong" thing))
@@ -82,7 +82,7 @@ MET yet. Add the tags to MET."
   "Add the things in the cells of WORLD to MET, and check the things and the cells' flags."
   (loop for index below (length (world-flags world))
         for flags = (aref (map-flags (world-map world)) index)
-        do (do-cell (thing index world)
+        do (do-cell-things (thing index world)
              (count-things-at-location (list thing) :floor met)
              (check-thing-on-floor thing index world)
              (setf flags (logior flags (thing-flags thing))))

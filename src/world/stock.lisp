@@ -10,19 +10,19 @@
 (deftype tag () '(unsigned-byte 32))
 (deftype tags () '(simple-array tag (*)))
 
-(defun make-tags (size) (make-array size :element-type 'tag :initial-element 0))
+(defun make-tag-vector (size) (make-array size :element-type 'tag :initial-element 0))
 
 (defconstant +initial-stock-size+ 16 "The number of things that a new stock has room for.")
 
 (define-kind (stock :constructor (make-stock (&optional (cells 0)
-                                              &aux (firsts (make-tags cells)))))
+                                              &aux (firsts (make-tag-vector cells)))))
     "The things of a world, and the cells of the floor that they are in."
   (:state
    (things (make-array +initial-stock-size+ :initial-element nil) simple-vector
            "the things by rank, in order of creation; NIL where one has been destroyed" :part)
    (count 0 fixnum "the number of ranks in use")
-   (firsts (make-tags 0) tags "by cell index, the tag of the first thing on the cell's floor")
-   (nexts (make-tags +initial-stock-size+) tags
+   (firsts (make-tag-vector 0) tags "by cell index, the tag of the first thing on the cell's floor")
+   (nexts (make-tag-vector +initial-stock-size+) tags
           "by rank, the tag of the thing that arrived next in the same cell")
    (marks (make-octets +initial-stock-size+) octets
           "by rank, the flags that the thing causes in its cell")))
@@ -30,8 +30,8 @@
 ;;; Cells.
 
 ;; Inline: callers that move things call them by the thousand in a tick.
-(declaim (inline call-with-cell append-to-cell take-from-cell marks-of-cell))
-(defun call-with-cell (function index stock)
+(declaim (inline visit-things-in-cell append-to-cell take-from-cell cell-thing-flags))
+(defun visit-things-in-cell (function index stock)
   "Call FUNCTION with each thing on the floor of the cell INDEX of STOCK, in order of arrival."
   (declare (type function function) (type cell-index index) (type stock stock))
   (loop for tag of-type tag = (aref (stock-firsts stock) index)
@@ -67,7 +67,7 @@
   (and (= (1+ rank) (aref (stock-firsts stock) index))
        (zerop (aref (stock-nexts stock) rank))))
 
-(defun marks-of-cell (index stock)
+(defun cell-thing-flags (index stock)
   (declare (type cell-index index) (type stock stock))
   (loop with flags of-type (unsigned-byte 8) = 0
         for tag of-type tag = (aref (stock-firsts stock) index)
@@ -96,7 +96,7 @@
 
 ;; Ranks only get smaller, from the first to the last, so an updated tag in FIRSTS is never mistaken
 ;; for one yet to be updated.
-(defun close-gaps (stock index-of)
+(defun close-rank-gaps (stock index-of)
   "Renumber the ranks in STOCK without gaps. INDEX-OF is a function that returns the cell index of a
 thing on the floor, else NIL."
   (let* ((old (stock-things stock)) (nexts (stock-nexts stock)) (count (stock-count stock))
@@ -128,7 +128,7 @@ thing on the floor, else NIL."
   (digest-add digest (length (stock-firsts stock)))
   (dotimes (index (length (stock-firsts stock)))
     (let ((things '()))
-      (call-with-cell (lambda (thing) (push thing things)) index stock)
+      (visit-things-in-cell (lambda (thing) (push thing things)) index stock)
       (digest-add digest (nreverse things))))
   (digest-add digest (stock-count stock))
   (loop for thing across (stock-things stock) repeat (stock-count stock)

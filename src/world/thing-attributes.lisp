@@ -80,7 +80,7 @@ a declared attribute or of an attribute of some thing."
     (update-physics-slots thing)
     (when (eq (thing-location thing) :floor)
       (record-thing-flags thing (world-stock (thing-world thing)))
-      (refresh-cell-flags (thing-world thing) (thing-index thing)))))
+      (refresh-cell-flags (thing-world thing) (thing-cell-index thing)))))
 
 (defun checked-entry (operator name value)
   (let ((key (attribute-key name)))
@@ -119,10 +119,10 @@ the attribute cannot have. Warns as GET-ATTRIBUTE does."
       (change-attributes thing descriptor)))
   new-value)
 
-(defun set-attribute-again (thing attribute new-value)
+(defun set-attribute-in-replay (thing attribute new-value)
   (call-with-values-as-data #'set-attribute thing attribute new-value))
 
-(define-operator 'set-attribute '(thing name datum) #'set-attribute-again)
+(define-operator 'set-attribute '(thing name datum) #'set-attribute-in-replay)
 
 (defun (setf get-attribute) (new-value thing attribute)
   (set-attribute thing attribute new-value))

@@ -144,7 +144,7 @@ at OPPOSITE, and at the last corner (readings 55, 56)."
   (let ((right (1- (map-width map))) (bottom (1- (map-height map))))
     (setf (map-enclosed map)
           (and (loop for x from 0 to right
-                     always (and (filled-at-p map x 0) (filled-at-p map x bottom)))
+                     always (and (filled-cell-at-p map x 0) (filled-cell-at-p map x bottom)))
                (loop for y from 0 to bottom
-                     always (and (filled-at-p map 0 y) (filled-at-p map right y)))))
+                     always (and (filled-cell-at-p map 0 y) (filled-cell-at-p map right y)))))
     map))

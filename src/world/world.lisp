@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(world do-cell world-rank-count thing-of-rank do-things change-world changing
+(export '(world do-cell-things world-rank-count thing-of-rank do-things change-world changing
           permitting-changes first-warning-for-key-p warning-given-p record-progress-checked
           progress-checked-p warn-once warn-of-angle-in-degrees))
 
@@ -101,8 +101,8 @@ in the resident world of each map.")
         for thing = (thing-of-rank rank world)
         when thing collect thing))
 
-(declaim (inline thing-index))
-(defun thing-index (thing)
+(declaim (inline thing-cell-index))
+(defun thing-cell-index (thing)
   (the cell-index (point-index (world-map (thing-world thing)) (thing-x thing) (thing-y thing))))
 
 (defun remove-thing (thing world)
@@ -111,16 +111,17 @@ in the resident world of each map.")
     (setf (svref (stock-things stock) (thing-rank thing)) nil)
     (decf (world-live-count world))
     (when (> (stock-count stock) (+ 64 (* 2 (world-live-count world))))
-      (close-gaps stock (lambda (other)
-                          (and (eq :floor (thing-location other)) (thing-index other)))))))
+      (close-rank-gaps stock (lambda (other)
+                               (and (eq :floor (thing-location other))
+                                    (thing-cell-index other)))))))
 
-(defmacro do-cell ((thing index world) &body body)
+(defmacro do-cell-things ((thing index world) &body body)
   "Run BODY with THING bound to each thing on the floor of the cell INDEX of WORLD, in order of
 arrival. BODY must not move things."
   (with-gensyms (visit)
     `(flet ((,visit (,thing) ,@body))
        (declare (inline ,visit))
-       (call-with-cell #',visit ,index (world-stock ,world)))))
+       (visit-things-in-cell #',visit ,index (world-stock ,world)))))
 
 (addition things-at)
 (defun things-at (world x y)
@@ -130,7 +131,7 @@ in order of arrival. Return NIL if the point is outside the map. Signals WRONG-A
   (check-point 'things-at x y)
   (let ((index (map-index (world-map world) x y)) (things '()))
     (when index
-      (do-cell (thing index world) (push thing things)))
+      (do-cell-things (thing index world) (push thing things)))
     (nreverse things)))
 
 ;;; Code within ticks (kickers, events, commands) changes the world directly. Changes by users from

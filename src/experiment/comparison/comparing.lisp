@@ -33,8 +33,8 @@ all that RESULTS have in common if MEASURE is NIL. Errors name OPERATOR."
 Factors with equal values make the contrast's WHERE; the other factors name its two sides."
   (loop for other in (if place (cons place (other-factors results place)) (naming-factors results))
         for factor = (nth other (results-factors results))
-        for a = (factor-text other first)
-        for b = (factor-text other second)
+        for a = (sample-level-text other first)
+        for b = (sample-level-text other second)
         if (string= a b)
           collect (full-level-name factor a) into where
         else
@@ -47,8 +47,10 @@ Factors with equal values make the contrast's WHERE; the other factors name its 
   "Group PAIRS by their two levels of the factor PLACE. Return lists (level base pair...)."
   (loop with factor = (nth place (results-factors results))
         for group in (group-by pairs (lambda (pair)
-                                      (mapcar (lambda (sample) (factor-text place sample)) pair)))
-        collect (append (mapcar (lambda (sample) (level-name factor (factor-text place sample)))
+                                      (mapcar (lambda (sample) (sample-level-text place sample))
+                                              pair)))
+        collect (append (mapcar (lambda (sample)
+                                  (level-name factor (sample-level-text place sample)))
                                 (first group))
                         group)))
 

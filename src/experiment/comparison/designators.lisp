@@ -5,19 +5,21 @@
 ;;; A value of a factor is a level. Factors are given by their places in SAMPLE-TEXTS. Named
 ;;; conditions are the levels of the first factor, CASE, which determines those of their factors.
 
-(defun factor-text (place sample) (nth place (sample-texts sample)))
+(defun sample-level-text (place sample) (nth place (sample-texts sample)))
 
 (defun levels (results place)
   "Return the texts of the levels that the factor with index PLACE has in RESULTS, in table order."
-  (remove-duplicates (mapcar (lambda (sample) (factor-text place sample)) (results-samples results))
+  (remove-duplicates (mapcar (lambda (sample) (sample-level-text place sample))
+                             (results-samples results))
                      :test #'string= :from-end t))
 
 (defun case-determines-factor-p (place samples)
   "True if the named case, the first factor of SAMPLES, determines the factor with index PLACE."
   (loop for sample in samples
         always (loop for other in samples
-                     always (or (string/= (factor-text 0 sample) (factor-text 0 other))
-                                (string= (factor-text place sample) (factor-text place other))))))
+                     always (or (string/= (sample-level-text 0 sample) (sample-level-text 0 other))
+                                (string= (sample-level-text place sample)
+                                         (sample-level-text place other))))))
 
 (defun naming-factors (results)
   "Factors of RESULTS that no case determines make the names of conditions. Return their indices."
@@ -72,13 +74,13 @@ sample of a pair has the level BASE; the first has LEVEL, or any other level if 
   (let ((else (other-factors results place)))
     (flet ((counterpart (sample)
              (find-if (lambda (other)
-                        (and (string= base (factor-text place other))
+                        (and (string= base (sample-level-text place other))
                              (loop for place in else
-                                   always (string= (factor-text place sample)
-                                                   (factor-text place other)))))
+                                   always (string= (sample-level-text place sample)
+                                                   (sample-level-text place other)))))
                       (results-samples results))))
       (loop for sample in (results-samples results)
-            for text = (factor-text place sample)
+            for text = (sample-level-text place sample)
             for other = (and (string/= base text)
                              (or (null level) (string= level text))
                              (counterpart sample))
@@ -217,16 +219,16 @@ level base). Else return NIL."
             when (and (member level levels :test #'string=) (member base levels :test #'string=))
               return (list place level base)))))
 
-(defun same-samples-p (results first second level-pair)
+(defun same-pair-by-number-p (results first second level-pair)
   "True if LEVEL-PAIR compares exactly the conditions with the numbers FIRST and SECOND."
   (equal (list (list (numbered-sample results first) (numbered-sample results second)))
          (level-pair-samples results level-pair)))
 
-(defun distinguish-levels-from-numbers (results first second)
+(defun resolve-integer-designators (results first second)
   "Integers can mean levels or numbers of conditions. If FIRST and SECOND must mean levels of one
 factor, return their texts, else return both unchanged. Signals MISUSE if both meanings fit."
   (let ((level-pair (level-pair-of-integers results first second)))
-    (cond ((or (null level-pair) (same-samples-p results first second level-pair))
+    (cond ((or (null level-pair) (same-pair-by-number-p results first second level-pair))
            (values first second))
           ((and (numbered-sample results first) (numbered-sample results second))
            (reject-ambiguous (format nil "~D against ~D" first second)
@@ -238,7 +240,7 @@ factor, return their texts, else return both unchanged. Signals MISUSE if both m
 (defun designated-pairs (results first second)
   "Return the pairs of samples of RESULTS that the designators FIRST and SECOND mean. If these are
 levels that several conditions have, also return the factor's index. SECOND may be :ALL."
-  (multiple-value-bind (first second) (distinguish-levels-from-numbers results first second)
+  (multiple-value-bind (first second) (resolve-integer-designators results first second)
     (multiple-value-bind (pairs place)
         (and (or (rest (designated-samples results first))
                  (and (not (eq :all second)) (rest (designated-samples results second))))

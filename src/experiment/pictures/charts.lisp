@@ -28,20 +28,20 @@ values are the names of series, if there is only one such factor."
 
 ;;; Series and panels.
 
-(defun factor-values-name (sample places factors)
+(defun sample-name-by-factors (sample places factors)
   "Name SAMPLE by its levels of the factors with indices PLACES. Return NIL if PLACES is empty."
   (and places
        (level-names (loop for place in places collect (nth place factors))
-                    (loop for place in places collect (factor-text place sample)))))
+                    (loop for place in places collect (sample-level-text place sample)))))
 
 (defun series-title (places factors)
   (and places (null (rest places)) (nth (first places) factors)))
 
 (defun series-name (sample places factors)
-  (let ((text (and (series-title places factors) (factor-text (first places) sample))))
+  (let ((text (and (series-title places factors) (sample-level-text (first places) sample))))
     (if (and text (string/= "" text))
         text
-        (factor-values-name sample places factors))))
+        (sample-name-by-factors sample places factors))))
 
 (defun group-series (samples places factors)
   (loop for group in (group-by samples (lambda (sample) (series-name sample places factors)))
@@ -68,10 +68,11 @@ values are the names of series, if there is only one such factor."
           (t (let ((last (last places)))
                (loop for group in (group-by samples
                                            (lambda (sample)
-                                             (factor-values-name sample last factors)))
+                                             (sample-name-by-factors sample last factors)))
                      append (panels group (butlast places) factors
                                     (format nil "~@[~A ~]~A" where
-                                            (factor-values-name (first group) last factors)))))))))
+                                            (sample-name-by-factors (first group) last
+                                                                    factors)))))))))
 
 ;;;; Charts
 
@@ -117,7 +118,8 @@ values are the names of series, if there is only one such factor."
   (loop for (name . samples) in (panel-series panel)
         collect (cons name (loop for sample in samples
                                  for estimate = (funcall estimate-of sample)
-                                 collect (list (if place (x-value (factor-text place sample)) "all")
+                                 collect (list (if place (x-value (sample-level-text place sample))
+                                                   "all")
                                                (estimate-value estimate) (estimate-low estimate)
                                                (estimate-high estimate))))))
 

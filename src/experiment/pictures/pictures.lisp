@@ -67,7 +67,7 @@ or the directory cannot be made."
 
 ;;;; The paths of robots in trials
 
-(defun ways-of-trial (experiment condition trial)
+(defun rerun-trial-for-paths (experiment condition trial)
   "Run TRIAL of CONDITION of EXPERIMENT again. Return a list of the paths of the trial's robots."
   (let ((trails '()) (watched-p nil))
     (flet ((look (simulation)
@@ -81,11 +81,11 @@ or the directory cannot be made."
                                        +largest+))))
         (trails-to-ways trails trial (result-outcome result))))))
 
-(defun ways-of-trials (experiment condition trials)
+(defun rerun-trials-for-paths (experiment condition trials)
   (prepare-trials experiment condition)
   (call-without-output (lambda ()
                          (loop for trial in trials
-                               append (ways-of-trial experiment condition trial)))))
+                               append (rerun-trial-for-paths experiment condition trial)))))
 
 (defun trial-numbers (trials)
   (check-argument save-ways-picture trials
@@ -127,7 +127,7 @@ is a PNG file and rsvg-convert is missing."
                                     (take-snapshot (simulation-world (current-simulation))))
                                   experiment condition (first trials))))))
     (apply #'save-picture-of-ways 'save-ways-picture "trial" file start
-           (lambda () (ways-of-trials experiment condition trials))
+           (lambda () (rerun-trials-for-paths experiment condition trials))
            (or (question-of (experiment-name experiment))
                (string-downcase (experiment-name experiment)))
            (format nil "~A. ~A, with a marker ~:[at the end of each~;for each robot where ~
@@ -165,25 +165,26 @@ is a PNG file and rsvg-convert is missing."
                         (format nil "p ~A" (p-text (paired-adjusted-p difference))))))))))
 
 (defun rate-compared-p (measure comparison)
-  (find :rate (shown-differences (all-contrasts comparison) measure) :key #'paired-kind))
+  (find :rate (differences-in-measure (all-contrasts comparison) measure) :key #'paired-kind))
 
 (defun range-text (numbers)
   (let ((least (reduce #'min numbers)) (most (reduce #'max numbers)))
     (format nil "~D~:[ to ~D~;~]" least (= least most) most)))
 
-(defun shown-differences (contrasts measure)
+(defun differences-in-measure (contrasts measure)
   (remove nil (mapcar (lambda (contrast) (find-difference measure contrast)) contrasts)))
 
 (defun tests-text (contrasts measure)
   "Return a text on the number of tests for which p of MEASURE in CONTRASTS is corrected, or NIL."
-  (let ((tested (remove-if-not #'counts-as-test-p (shown-differences contrasts measure))))
+  (let ((tested (remove-if-not #'counts-as-test-p (differences-in-measure contrasts measure))))
     (when tested
       (let ((tests (paired-tests (first tested))))
         (format nil "one of ~D test~:P~:[, ~D of them shown~;~]" tests (= tests (length tested))
                 (length tested))))))
 
 (defun seeds-text (comparison measure)
-  (let ((trials (mapcar #'paired-trials (shown-differences (all-contrasts comparison) measure))))
+  (let ((trials (mapcar #'paired-trials
+                        (differences-in-measure (all-contrasts comparison) measure))))
     (and trials
          (format nil "~A seeds each~:[~;, those where both succeeded~]" (range-text trials)
                  (string-equal "ticks" measure)))))
@@ -225,7 +226,7 @@ MISUSE if FILE is a PNG file and rsvg-convert is missing."
   (check-argument save-comparison-picture comparison (comparison-p comparison) "a comparison")
   (check-argument save-comparison-picture measure (typep measure '(or symbol string))
                   "the name of a measure")
-  (unless (shown-differences (all-contrasts comparison) measure)
+  (unless (differences-in-measure (all-contrasts comparison) measure)
     (reject-name "measure" (string measure)
                  (remove-duplicates
                   (loop for contrast in (all-contrasts comparison)

@@ -43,7 +43,7 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
   (multiple-value-bind (rest given) (clause-arguments :thinking clauses)
     (if given (value-form :thinking (first rest)) :free)))
 
-(defun outcome-clauses (clauses)
+(defun trial-affecting-clauses (clauses)
   "Return those CLAUSES that affect the outcome of a trial, except the factors."
   (loop for key in '(:robots :parameters :clean :thinking :seed :limit :run :until :success
                      :measure :each-tick)
@@ -72,7 +72,7 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
      :measures ,(named-functions-form :measure clauses)
      :series ,(named-functions-form :each-tick clauses)
      :form ',form
-     :deciding ',(outcome-clauses clauses)))
+     :deciding ',(trial-affecting-clauses clauses)))
 
 (addition defexperiment)
 (define-user-macro defexperiment (&whole form name &body clauses &environment environment)

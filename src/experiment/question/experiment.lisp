@@ -51,7 +51,7 @@ variables hold weakly: the keys of a table" :writable))
   (let ((parameter (find-parameter name nil)))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 
-(defun parameter-values-with (settings clean)
+(defun all-parameter-values (settings clean)
   "Return a vector of the values of all parameters. SETTINGS are lists (name value); the last for a
 name counts. Other parameters have the value without noise if CLEAN is true, else the manual's."
   (cl:map 'simple-vector
@@ -113,7 +113,7 @@ PARAMETERS are lists (name value) for all conditions."
      :robots (if robots (ensure-list robots) (experiment-robots experiment))
      :thinking (second (or (assoc :thinking settings)
                            (list :thinking (experiment-thinking experiment))))
-     :parameters (parameter-values-with (append parameters settings) clean)
+     :parameters (all-parameter-values (append parameters settings) clean)
      :arguments (loop for name in (experiment-variables experiment)
                       collect (second (assoc name settings))))))
 

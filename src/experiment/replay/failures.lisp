@@ -128,9 +128,9 @@ way, and a line to type at the prompt that opens one of these trials. Return not
   "Return the block of INDEX for the trial at index PLACE of SAMPLE; NIL if the trial has no lines.
 Signals MISUSE if lines are missing."
   (when (aref (sample-digests sample) place)
-    (or (complete-block (trial-blocks index (row-key sample) (aref (sample-seeds sample) place)
-                                      (aref (sample-trials sample) place))
-                        (1+ (aref (sample-ticks sample) place)))
+    (or (find-complete-block (trial-blocks index (row-key sample) (aref (sample-seeds sample) place)
+                                           (aref (sample-trials sample) place))
+                             (1+ (aref (sample-ticks sample) place)))
         (reject-use "trial-series: not all lines of trial ~D of ~A are in series.csv. Run the ~
                      experiment again with that directory: it runs such trials again."
                     (aref (sample-trials sample) place) (sample-condition sample)))))

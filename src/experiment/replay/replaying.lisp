@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(run-again call-outside-trial trial-prompt-line *replayed-trial-line* await-time
+(export '(rerun-trial call-outside-trial trial-prompt-line *replayed-trial-line* await-real-time
           row-of-trial row-differences measure-values))
 
 ;;; Workers run trials in their own threads, without output. Here a trial runs in your thread: you
@@ -60,7 +60,7 @@ debugger without a user is an error of the trial."
                       (simulation-tick simulation))))
   (funcall then result))
 
-(defun run-again (experiment condition trial &key gate (then #'identity) journal)
+(defun rerun-trial (experiment condition trial &key gate (then #'identity) journal)
   "Run TRIAL of CONDITION of EXPERIMENT as RUN-TRIAL does, but in this thread and with output. When
 the trial ends, call THEN with the result while the trial's simulation exists. Return the result."
   (let ((result (make-result condition trial (trial-seed experiment trial)))
@@ -87,7 +87,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
 
 ;;; Pace and steps: waiting at the gate, between two ticks.
 
-(defun await-time (due simulation)
+(defun await-real-time (due simulation)
   "Wait until the real time DUE, in seconds. Meanwhile serve other threads' requests to SIMULATION."
   (loop with never = (make-semaphore "never")
         for left = (- due (seconds-now))
@@ -105,7 +105,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
             (error (condition) (warning-set (text-of-condition condition)))))
         (setf due (seconds-now)))
       (unless (eq rate :free)
-        (await-time due simulation)
+        (await-real-time due simulation)
         (setf due (+ (max due (- (seconds-now) 0.25d0)) (/ 1d0 rate))))
       1)))
 
@@ -158,7 +158,7 @@ the trial ends, call THEN with the result while the trial's simulation exists. R
 
 ;;; Running the trial.
 
-(defun keep-journal (journal)
+(defun collect-journal (journal)
   "Return the journal of the current simulation if JOURNAL is true. If JOURNAL is the name of a
 file, also save the journal there."
   (when journal
@@ -181,7 +181,7 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
         (stopped-p nil) (kept nil))
     (labels ((look-around ()
                (call-outside-trial (lambda ()
-                                     (setf kept (keep-journal journal))
+                                     (setf kept (collect-journal journal))
                                      (funcall then))))
              (stop ()
                (let ((result (make-result condition trial 0)))
@@ -189,12 +189,12 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
                  (unless (shiftf stopped-p t) (look-around))
                  (throw 'stopped result))))
       (let ((result (catch 'stopped
-                      (run-again experiment condition trial
-                                 :gate (replay-gate until rate step #'stop)
-                                 :journal (and journal t)
-                                 :then (lambda (result)
-                                         (declare (ignore result))
-                                         (look-around))))))
+                      (rerun-trial experiment condition trial
+                                   :gate (replay-gate until rate step #'stop)
+                                   :journal (and journal t)
+                                   :then (lambda (result)
+                                           (declare (ignore result))
+                                           (look-around))))))
         (values result stopped-p kept)))))
 
 (defun measure-values (experiment result)

@@ -37,7 +37,7 @@ the text for a sample and the index of a trial, or NIL."
                 (and (= (occurrence-count a) (occurrence-count b))
                      (string< (occurrence-text a) (occurrence-text b))))))))
 
-(defconstant +most-listed+ 5 "The most reasons or errors that are listed.")
+(defconstant +most-occurrences+ 5 "The most reasons or errors that are listed.")
 
 (defun conditions-text (occurrence)
   (tally-text (stable-sort (reverse (occurrence-where occurrence)) #'> :key #'cdr) 3))
@@ -51,7 +51,7 @@ a form that replays an example."
       (loop with width = (length (integer-text (occurrence-count (first all))))
             for one in all
             for sample = (occurrence-sample one)
-            repeat +most-listed+
+            repeat +most-occurrences+
             do (write-wrapped (format nil "~A~@[: ~A~]" (occurrence-text one)
                                       (and several-p (conditions-text one)))
                               stream :first (format nil "  ~V@A  " width (occurrence-count one)))
@@ -59,9 +59,9 @@ a form that replays an example."
                                       (no-break-text (prin1-to-string (sample-condition sample)))
                                       (occurrence-trial one))
                               stream :first (format nil "  ~VA  " width "")))
-      (when (nthcdr +most-listed+ all)
+      (when (nthcdr +most-occurrences+ all)
         (format stream "  and ~D of other kinds~%"
-                (reduce #'+ (nthcdr +most-listed+ all) :key #'occurrence-count))))))
+                (reduce #'+ (nthcdr +most-occurrences+ all) :key #'occurrence-count))))))
 
 (defun write-reasons (results stream)
   (write-occurrences

@@ -75,7 +75,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
 
 ;;; Rounds.
 
-(defun run-round (experiment conditions last presence shard store workers time-limit stream)
+(defun run-trials-up-to (experiment conditions last presence shard store workers time-limit stream)
   (let* ((queue (make-queue conditions last presence (or shard '(0 . 1)) time-limit))
          (missing (count-missing queue))
          (workers (min workers missing))
@@ -92,9 +92,9 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
         for look from 1
         for trials = (count-at-look look)
         while (and conditions (<= trials most))
-        do (run-round experiment conditions trials
-                      (present-rows experiment directory (constantly nil))
-                      nil store workers time-limit stream)
+        do (run-trials-up-to experiment conditions trials
+                             (present-rows experiment directory (constantly nil))
+                             nil store workers time-limit stream)
            (setf conditions (wide-conditions experiment conditions look width directory))))
 
 ;;; RUN-EXPERIMENT.
@@ -123,8 +123,8 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
            (if until
                (run-until-narrow experiment until trials directory store workers time-limit
                                  stream)
-               (run-round experiment (experiment-conditions experiment) trials presence shard
-                          store workers time-limit stream))
+               (run-trials-up-to experiment (experiment-conditions experiment) trials presence shard
+                                 store workers time-limit stream))
            (check-finished-run store parts (seconds-since begun))))
        experiment directory)
       (sort-tables experiment directory))))
@@ -158,7 +158,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
       (format stream "~&~D trial~:P had errors, the first: ~A. PRINT-RESULTS lists all.~%"
               (length errors) (string-right-trim "." (cut (first errors) 300))))))
 
-(defun run-and-read (experiment directory trials until shard workers time-limit stream)
+(defun run-and-read-results (experiment directory trials until shard workers time-limit stream)
   (flet ((run ()
            (run-in-directory experiment directory trials until shard workers time-limit stream)
            (let ((results (results-from-table (rows-file directory))))
@@ -202,7 +202,8 @@ A trial with an error has a row, too. Signals UNKNOWN-NAME, WRONG-ARGUMENT, MISU
     (check-run-arguments trials workers directory until shard time-limit)
     (flet ((run (path)
              (let ((*directory-given-p* (and directory t)))
-               (run-and-read experiment path trials until shard workers time-limit stream))))
+               (run-and-read-results experiment path trials until shard workers time-limit
+                                     stream))))
       (setf (experiment-results experiment)
             (if directory
                 (let* ((path (ensure-store-directory directory)) (results (run path)))

@@ -17,12 +17,12 @@ results are left, and the new result or NIL."
   (multiple-value-bind (trouble there-p) (lparallel:try-receive-result channel :timeout 0.2)
     (values (if there-p (1- left) left) trouble)))
 
-(defconstant +waits-for-workers+ 10
+(defconstant +most-worker-waits+ 10
   "The time to wait for threads before they are ended, in fifths of a second.")
 
 (defun end-workers (channel left)
   "Wait a moment for the LEFT threads whose results CHANNEL still lacks, then end these threads."
-  (loop repeat +waits-for-workers+
+  (loop repeat +most-worker-waits+
         while (plusp left)
         do (setf left (await-result channel left)))
   (handler-bind ((warning #'muffle-warning))
@@ -165,7 +165,7 @@ true, unless the function STOPPING-P returns true."
     (let ((open-p t))
       (flet ((leave () (when open-p (return-from call t))))
         (unwind-protect (if seconds
-                            (call-with-limit function seconds #'leave)
+                            (call-with-time-limit function seconds #'leave)
                             (funcall function))
           (setf open-p nil))))
     nil))
@@ -213,7 +213,7 @@ Return the trial's result, even if the trial ends the thread, unless STOPPING-P 
 (defun in-shard-p (trial shard)
   (= (car shard) (mod trial (cdr shard))))
 
-(defun step-queue (queue)
+(defun pop-queue-trial (queue)
   "Return condition and number of the next trial of QUEUE, even if it has a row; NIL at the end."
   (when (null (queue-left queue))
     (setf (queue-trial queue)
@@ -224,11 +224,11 @@ Return the trial's result, even if the trial ends the thread, unless STOPPING-P 
                                   (queue-conditions queue))))
   (values (pop (queue-left queue)) (queue-trial queue)))
 
-(defun next-trial (queue)
+(defun next-missing-trial (queue)
   "Return condition and number of the next trial of QUEUE that has no row; NIL at the end."
   (with-lock ((queue-lock queue))
     (unless (queue-closed-p queue)
-      (loop (multiple-value-bind (condition trial) (step-queue queue)
+      (loop (multiple-value-bind (condition trial) (pop-queue-trial queue)
               (cond ((null condition) (return nil))
                     ((not (trial-present-p condition trial (queue-presence queue)))
                      (return (values condition trial)))))))))
@@ -262,7 +262,7 @@ Return the trial's result, even if the trial ends the thread, unless STOPPING-P 
 
 (defun run-queued-trials (experiment queue store progress worker)
   (flet ((work ()
-           (loop (multiple-value-bind (condition trial) (next-trial queue)
+           (loop (multiple-value-bind (condition trial) (next-missing-trial queue)
                    (unless condition (return))
                    (run-and-store-trial experiment condition trial queue store progress worker)))))
     (call-without-output

@@ -161,7 +161,7 @@ in the worker numbered WORKER."
   (let ((bits (presence-bits condition presence)))
     (and (< trial (length bits)) (plusp (aref bits trial)))))
 
-(defun note-present (condition trial presence)
+(defun note-trial-present (condition trial presence)
   (let ((bits (presence-bits condition presence)))
     (when (>= trial (length bits))
       (setf bits (adjust-array bits (* 2 (1+ trial)) :initial-element 0)
@@ -205,5 +205,5 @@ DAMAGED-TABLE."
           (check-row experiment condition texts file number)
           (when (and condition (series-complete-p series texts))
             (funcall sample condition texts)
-            (note-present condition (parse-integer (nth place texts)) presence)))))
+            (note-trial-present condition (parse-integer (nth place texts)) presence)))))
     (values presence series)))

@@ -124,7 +124,7 @@ indices, from 0, of shards that lack rows. Rows in DIRECTORY and in the shards b
                          (declare (ignore directory))
                          (when (and complete-p
                                     (string= fingerprint (condition-fingerprint condition)))
-                           (note-present condition trial presence)))
+                           (note-trial-present condition trial presence)))
                        experiment directory)
     (loop for trial from 1 to trials
           do (unless (every (lambda (condition) (trial-present-p condition trial presence))

@@ -7,7 +7,7 @@
 (defun result-digest-text (result)
   (format nil "~@[~16,'0X~]" (result-digest result)))
 
-(defun trial-texts (experiment result)
+(defun trial-key-texts (experiment result)
   "Return the texts, up to the trial's number, with which each line of EXPERIMENT's RESULT begins."
   (let ((condition (result-condition result)))
     (append (list (string-downcase (experiment-name experiment))
@@ -18,7 +18,7 @@
                   (integer-text (result-trial result))))))
 
 (defun result-texts (experiment result)
-  (append (trial-texts experiment result)
+  (append (trial-key-texts experiment result)
           (list (result-outcome result)
                 (result-reason result)
                 (format nil "~@[~D~]" (result-ticks result)))
@@ -31,7 +31,7 @@
 
 (defun series-text (experiment result)
   "Return the lines for RESULT of EXPERIMENT in the table of series, or \"\" if there are none."
-  (let* ((line (csv-line (trial-texts experiment result)))
+  (let* ((line (csv-line (trial-key-texts experiment result)))
          (beginning (substitute #\, #\Newline line :start (1- (length line)))))
     (with-output-to-string (out)
       (loop for (tick . texts) in (result-series result)

@@ -145,13 +145,13 @@ column. The number is 0 if the row has no digest: after a timeout or the end of 
       0
       (1+ (parse-integer (nth (+ 4 seed) texts)))))
 
-(defun complete-block (blocks count)
+(defun find-complete-block (blocks count)
   "Return one of BLOCKS that has all COUNT lines of a trial, or NIL."
   (find-if (lambda (block) (and (zerop (block-first block)) (= count (block-count block)))) blocks))
 
 (defun block-of-row (index texts)
-  (complete-block (blocks-of-row index texts)
-                  (expected-line-count texts (seed-column (series-index-columns index)))))
+  (find-complete-block (blocks-of-row index texts)
+                       (expected-line-count texts (seed-column (series-index-columns index)))))
 
 (defun index-existing-series (experiment directory)
   "Return the index of EXPERIMENT's series in DIRECTORY; NIL if it has none. Signals DAMAGED-TABLE."
@@ -188,7 +188,7 @@ column. The number is 0 if the row has no digest: after a timeout or the end of 
 
 ;;; Order.
 
-(defun reject-other-block (block whole)
+(defun reject-conflicting-block (block whole)
   (reject-table (block-file block) (block-number block)
                 "the lines of a trial begin here. They differ from the lines of the same trial ~
                  that begin at line ~D of ~A. Something outside of the experiment affects its ~
@@ -200,7 +200,7 @@ column. The number is 0 if the row has no digest: after a timeout or the end of 
   (let ((lines (nthcdr (block-first block) (block-lines whole line-of)))
         (others (block-lines block line-of)))
     (unless (and (<= (length others) (length lines)) (every #'string= others lines))
-      (reject-other-block block whole))))
+      (reject-conflicting-block block whole))))
 
 (defun reject-missing-series (rows texts seed)
   (reject-use "Trial ~A of the condition ~A has a row, but not all of its lines are in series.csv. ~

@@ -8,7 +8,7 @@
 ;;; not depend on the order of a table.
 
 (defconstant +deepest-data+ 2000 "Parts of data that are nested deeper do not count.")
-(defconstant +largest-data+ 1000000 "The most conses, arrays, tables and structures in data.")
+(defconstant +most-compounds+ 1000000 "The most conses, arrays, tables and structures in data.")
 (defconstant +most-elements+ 20000000 "The most elements of arrays in data.")
 
 (defun user-structure-p (value)
@@ -37,7 +37,7 @@ that has no parts itself. PATH maps the compounds around the current part to the
   (digest nil :type digest :read-only t)
   (atom nil :type function :read-only t)
   (path (make-hash-table :test 'eq) :read-only t)
-  (compounds +largest-data+ :type fixnum)
+  (compounds +most-compounds+ :type fixnum)
   (elements +most-elements+ :type fixnum))
 
 (defun digest-word-into (word walk)

@@ -83,7 +83,7 @@ FILE when it was loaded, or NIL."
         (note-file file written reach)
         (note-part :typed (safe-text name)
                    (or (gethash function *prompt-function-numbers*)
-                       (setf (gethash function *prompt-function-numbers*) (unique-number)))
+                       (setf (gethash function *prompt-function-numbers*) (random-identifier)))
                    reach))))
 
 (defun note-function (function name reach)
@@ -202,7 +202,7 @@ and an empty table are not noted, because variables for data often have such val
   "True in a Lisp that was saved with its experiments: later changes of their files do not count.")
 
 (defun short-file-name (file)
-  (name-in-directory (native-path file)))
+  (file-base-name (native-path file)))
 
 (defun digest-of-file (file written)
   "Return a digest of the code in FILE. Signals MISUSE if the file's write date has changed since it
@@ -241,7 +241,7 @@ was loaded. WRITTEN is the date at loading, or NIL."
   "Return the definitions in use when a trial of CONDITION begins; see DEFINITIONS-DEPENDED-ON."
   (call-in-trial (lambda () (definitions-depended-on (current-simulation))) experiment condition 1))
 
-(defun find-reach (experiment condition definitions)
+(defun compute-reach (experiment condition definitions)
   (let ((reach (make-reach)))
     (dolist (entry (remove nil (mapcar #'definition-registry-entry definitions)))
       (visit-definition entry reach))
@@ -257,7 +257,7 @@ was loaded. WRITTEN is the date at loading, or NIL."
 (defun fingerprint-parts (experiment condition)
   "Return the sorted fingerprint parts of CONDITION of EXPERIMENT, and the condition's REACH."
   (let* ((definitions (definitions-in-trial experiment condition))
-         (reach (find-reach experiment condition definitions)))
+         (reach (compute-reach experiment condition definitions)))
     (values
      (sort (remove-duplicates (append (configuration-parts experiment condition)
                                       (reach-parts reach)
@@ -302,7 +302,7 @@ was loaded. WRITTEN is the date at loading, or NIL."
   (call-with-trial-syntax
    (lambda ()
      (set-reach condition
-                (find-reach experiment condition (definitions-in-trial experiment condition))))))
+                (compute-reach experiment condition (definitions-in-trial experiment condition))))))
 
 (defun prepare-experiment (experiment)
   "Call PREPARE-CONDITION for all conditions of EXPERIMENT; return a list of the values. Signals

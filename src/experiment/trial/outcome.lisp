@@ -58,7 +58,7 @@
       (reject-use "The value of :run is the plan ~(~A~), which has not been run. Write ~A."
                   (procedure-name plan) (run-plan-advice (procedure-name plan))))))
 
-(defun error-in-plan (values)
+(defun plan-error-text (values)
   "If VALUES are those of RUN-PLAN after a Lisp error, return the text of the error; else \"\"."
   (if (and (eq :failed (second values)) (typep (first values) 'lisp-failure))
       (plain-text (failure-text (lisp-failure-condition (first values))))
@@ -212,7 +212,7 @@ SAMPLER keeps the first error."
       (atomic-push (lambda () (sample-once sampler simulation)) (custody-questions custody))
       (min 1 count))))
 
-(defun call-sampling (function experiment result)
+(defun call-recording-series (function experiment result)
   "Call FUNCTION, which runs the trial of RESULT in the current simulation, and record the
 :each-tick values of EXPERIMENT for NOTE-SERIES."
   (let ((*sampler* (and (experiment-series experiment) (make-sampler experiment result)))

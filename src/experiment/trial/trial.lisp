@@ -69,11 +69,11 @@ to call besides the gate of the limit. If JOURNAL is true the simulation keeps a
 before :run has returned, or if :run did not return."
   *trial-values*)
 
-(defun run-forms (experiment condition)
+(defun run-trial-forms (experiment condition)
   "Evaluate :run and :until of EXPERIMENT under CONDITION. Return a list of the values of :run; (T)
 if there is an :until; (NIL :LIMIT) if the limit of ticks was reached."
   (catch 'out-of-ticks
-    (return-from run-forms
+    (return-from run-trial-forms
       (let ((values (multiple-value-list (call-trial-form (experiment-run experiment) condition))))
         (setf *trial-values* values)
         (signal-pending-error *message-queue*)
@@ -86,7 +86,7 @@ if there is an :until; (NIL :LIMIT) if the limit of ticks was reached."
   (list nil :limit))
 
 (defun run-noting-failures (experiment condition result)
-  "Return the value of RUN-FORMS. If a plan started by BEGIN-PLAN fails, and :run does not handle
+  "Return the value of RUN-TRIAL-FORMS. If a plan started by BEGIN-PLAN fails, and :run does not handle
 the failure, return the values that RUN-PLAN would have returned, and set the error of RESULT."
   (block run
     (handler-bind ((user-code-error
@@ -95,7 +95,7 @@ the failure, return the values that RUN-PLAN would have returned, and set the er
                          (when (typep cause '(and plan-failure (not lisp-failure)))
                            (set-first-error result (text-of-condition error))
                            (return-from run (list cause :failed)))))))
-      (run-forms experiment condition))))
+      (run-trial-forms experiment condition))))
 
 (defun final-trial-outcome (experiment condition outcome reason)
   "Return the final outcome and reason of a trial of CONDITION. OUTCOME and REASON are those of
@@ -142,7 +142,7 @@ not from RUN-PLAN and a plan can never continue, the trial fails with the reason
   (let ((undone (and (zerop (simulation-tick)) (undone-requests-text (current-simulation)))))
     (and undone (format nil "No ticks have passed in the trial, so ~A" undone))))
 
-(defun note-unfinished (result values)
+(defun note-unfinished-run (result values)
   "VALUES are those of :run. Unless RESULT is a success, add to it an error for a plan that can
 never continue or has not ended. Otherwise add an error if commands were given but no tick passed."
   (let ((text (or (and (not (success-p (result-outcome result)))
@@ -170,9 +170,9 @@ first value of :run. A failure counts as true, so :run may have taken the failur
     (multiple-value-bind (outcome reason) (outcome-of-run experiment values)
       (setf (values (result-outcome result) (result-reason result))
             (final-trial-outcome experiment condition outcome reason))
-      (set-first-error result (error-in-plan values))
+      (set-first-error result (plan-error-text values))
       (note-unnoticed-failures result values (reverse failed))
-      (note-unfinished result values)
+      (note-unfinished-run result values)
       (note-series result)
       (take-measures experiment result))))
 
@@ -194,10 +194,11 @@ first value of :run. A failure counts as true, so :run may have taken the failur
     (when trouble (set-error-outcome result trouble))))
 
 (defun complete-trial (experiment result)
-  (call-sampling (lambda ()
-                   (call-noting-errors (lambda () (evaluate-trial experiment result)) result)
-                   (note-final-state result))
-                 experiment result))
+  (call-recording-series (lambda ()
+                           (call-noting-errors (lambda () (evaluate-trial experiment result))
+                                               result)
+                           (note-final-state result))
+                         experiment result))
 
 (defun run-trial (experiment condition trial &key gate)
   "Run TRIAL, a number, of CONDITION of EXPERIMENT; GATE is as for CALL-IN-TRIAL. Return a result."
