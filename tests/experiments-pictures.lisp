@@ -268,9 +268,10 @@
            (text (progn (experiment:save-ways-picture 'wandering 1 file :trials 8)
                         (base:file-text file)))
            (outcomes (mapcar #'trails:way-outcome
-                             (experiment::rerun-trials-for-paths (experiment:find-experiment 'wandering)
-                                                                 (experiment:find-condition 'wandering 1)
-                                                                 '(1 2 3 4 5 6 7 8))))
+                             (experiment::rerun-trials-for-paths
+                              (experiment:find-experiment 'wandering)
+                              (experiment:find-condition 'wandering 1)
+                              '(1 2 3 4 5 6 7 8))))
            (succeeded (count "success" outcomes :test #'string=)))
       (is (< 0 succeeded 8))
       (is (search (format nil "succeeded: ~D trial" succeeded) text))

@@ -126,8 +126,7 @@
                                                       (+ node x y)))))))))
 
 (defun dijkstra-total (chart start goal)
-  "Return what GOAL costs from START, both nodes, by steps between nodes; +BARRED-COST+ if there is no
-way."
+  "Return what GOAL costs from START, both nodes, by steps between nodes, or +BARRED-COST+."
   (let ((known (make-hash-table)) (open (list (cons 0d0 goal))))
     (loop while open
           do (destructuring-bind (total . node) (pop open)

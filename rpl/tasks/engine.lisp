@@ -83,8 +83,9 @@ Return :budget when the steps of the reaction are used up, or when all tasks sto
             (t (return :idle))))))
 
 (defun run-round (runner)
-  "Run the ready tasks of RUNNER for one round, even if some meet trouble. Return RUN-READY-TASKS's value.
-If a tick's budget ends during a round, the next tick continues it, so no task loses its turn."
+  "Run the ready tasks of RUNNER for one round, even if some meet trouble. Return RUN-READY-TASKS's
+value. If a tick's budget ends during a round, the next tick continues it, so no task loses its
+turn."
   (unless (shiftf (runner-broken-off-p runner) nil)
     (incf (runner-round runner)))
   (let ((outcome (loop thereis (call-handling-trouble runner #'run-ready-tasks))))

@@ -8,8 +8,8 @@
           note-outside-call current-counterpart))
 
 ;;; Ready tasks queue first-in first-out by level; the highest level runs first. Bit n of MASK is
-;;; set while tasks of level n may be queued. The bit +INTERRUPT-BIT+, above all of these, is set when
-;;; the running task must check its own signal.
+;;; set while tasks of level n may be queued. The bit +INTERRUPT-BIT+, above all of these, is set
+;;; when the running task must check its own signal.
 
 (defconstant +levels+ 8 "The number of levels of tasks: the level of the plan, and those of nested
 policies.")

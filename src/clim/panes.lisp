@@ -179,7 +179,8 @@ would be cut off. Record in PANE what was painted where."
                                  (window-robot window) :width width)))))
 
 (defun cached-content-height (pane width)
-  "Return the value of MEASURE-CONTENT-HEIGHT for PANE and WIDTH, cached while the contents do not change."
+  "Return the value of MEASURE-CONTENT-HEIGHT for PANE and WIDTH, cached while the contents do not
+change."
   (let ((key (list width (display-content (pane-display pane)
                                           (window-robot (window-of pane))))))
     (unless (equal key (first (pane-measured pane)))

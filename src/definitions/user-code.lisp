@@ -143,7 +143,7 @@ again by itself, such as a kicker, return that function; else NIL.")
     nil))
 
 (defgeneric stop-recurring-remedy (item)
-  (:documentation "Return a sentence on how to stop ITEM's function, a value of RECURRING-FUNCTION."))
+  (:documentation "Return a sentence on how to stop ITEM's RECURRING-FUNCTION."))
 
 ;;; Calling.
 

@@ -231,7 +231,8 @@ participant is busy, try again at the end of the next tick."
 
 (defun await-postponed-fork (simulation)
   "If a fork of SIMULATION was postponed because this thread was busy, wait until the fork is made
-at the end of the next tick. Give up after +MAX-FORK-WAIT-CHECKS+ checks, as the ticks may have stopped."
+at the end of the next tick. Give up after +MAX-FORK-WAIT-CHECKS+ checks, as the ticks may have
+stopped."
   (let ((past (simulation-past simulation)) (moment (make-semaphore "kept fork")))
     (when (and past (past-wanted past))
       (loop repeat +max-fork-wait-checks+

@@ -42,7 +42,7 @@ true for a line that needs only free cells, and no distance from walls."
 (declaim-final line)
 
 (defun measure-line (line cells columns leaving)
-  "Compute and store LINE's cost: +BARRED-COST+ if LINE is not free or costs more than its limit. CELLS
+  "Store LINE's cost; it is +BARRED-COST+ if LINE is not free or costs more than its limit. CELLS
 belong to a terrain or field of COLUMNS columns. LEAVING is true if LINE may begin near a wall."
   (declare #.*hot* (type line line) (type amounts cells) (type (integer 0 40000) columns))
   (let* ((u (* 2 (line-x line))) (v (* 2 (line-y line)))
@@ -201,8 +201,9 @@ latest vertex; from there the way leads to (END-X,END-Y), at the cost SINCE."
 
 (declaim (inline free-line-cost))
 (defun free-line-cost (field x y end-x end-y limit leaving)
-  "Return the cost of the straight line from (X,Y) to (END-X,END-Y) on the cells of FIELD; +BARRED-COST+
-if the line is not free, or costs more than LIMIT. If LEAVING, the line may begin near a wall."
+  "Return the cost of the straight line from (X,Y) to (END-X,END-Y) on the cells of FIELD;
++BARRED-COST+ if the line is not free, or costs more than LIMIT. If LEAVING, the line may begin near
+a wall."
   (let ((line (make-line x y end-x end-y limit)))
     (declare (dynamic-extent line))
     (measure-line line (field-cells field) (field-columns field) leaving)

@@ -268,7 +268,7 @@ and CELLS are the cells of the terrain, which must not change."
              (set-draft-cost field node draft)))))
 
 (defun compute-total (field node)
-  "Return NODE's total, after computing all lower totals of FIELD; +BARRED-COST+ if there is no way."
+  "Compute FIELD's totals up to NODE's. Return NODE's total, or +BARRED-COST+ without a way."
   (declare #.*hot* (type field field) (type node node))
   (let ((queue (field-queue field)) (totals (field-totals field)) (drafts (field-drafts field)))
     (loop until (zerop (queue-count queue))

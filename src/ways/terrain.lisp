@@ -89,7 +89,7 @@ never modified" :writable)
 ;;; Making one.
 
 (defun free-cell-costs (map columns)
-  "Return a vector of costs of MAP's cells and a margin: 1 if free, +BARRED-COST+ in walls and margin."
+  "Return costs of MAP's cells and a margin, a vector: 1, or +BARRED-COST+ in walls and margin."
   (let ((cells (make-cost-vector (* columns (+ 2 (map-height map))) +barred-cost+)) (index 0))
     (dotimes (y (map-height map) cells)
       (dotimes (x (map-width map))

@@ -94,8 +94,9 @@ MALFORMED-DEFINITION for invalid contents."
                                            (cddr content)))))
       (clause-recipe definition clause name (evaluated-descriptor name descriptor)
                      :prototype (and prototype
-                                     (call-clause-code #'value definition clause
-                                                       "a prototype: a form whose value is a thing"))
+                                     (call-clause-code
+                                      #'value definition clause
+                                      "a prototype: a form whose value is a thing"))
                      :kickers kickers :x x :y y
                      :contents (append-clause-results #'inside contents
                                                       (- (length clause) (length contents)))))))

@@ -86,8 +86,9 @@ if there is an :until; (NIL :LIMIT) if the limit of ticks was reached."
   (list nil :limit))
 
 (defun run-noting-failures (experiment condition result)
-  "Return the value of RUN-TRIAL-FORMS. If a plan started by BEGIN-PLAN fails, and :run does not handle
-the failure, return the values that RUN-PLAN would have returned, and set the error of RESULT."
+  "Return the value of RUN-TRIAL-FORMS. If a plan started by BEGIN-PLAN fails and :run does not
+handle the failure, return the values that RUN-PLAN would have returned, and set the error of
+RESULT."
   (block run
     (handler-bind ((user-code-error
                      (lambda (error)
