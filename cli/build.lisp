@@ -298,7 +298,7 @@ and try again. If the second try fails, too, exit with status 2."
 (defun write-manual ()
   "Write the manual into the directory named in ARS_MAGNA_MANUAL. Exit with status 1 on an error."
   (load-project "ars-magna/manual")
-  (uiop:quit (uiop:symbol-call :ars-magna.manual :main (uiop:getenv "ARS_MAGNA_MANUAL"))))
+  (uiop:quit (uiop:symbol-call :ars-magna.manual :manual-main (uiop:getenv "ARS_MAGNA_MANUAL"))))
 
 ;;; The tests.
 

@@ -151,7 +151,7 @@ forms in its body."
     (dolist (operator '(expanded expanded-once))
       (let ((text (message `(lambda () (,operator (rpl:wait-time 4))))))
         (is (search "wait-time 4" text :test #'char-equal) "~A" text)
-        (is (not (search "misplaced-construct" text :test #'char-equal)) "~A" text)
+        (is (not (search "signal-misplaced-construct" text :test #'char-equal)) "~A" text)
         (is (not (search "plan-only-form" text :test #'char-equal)) "~A" text)))))
 
 (defmacro meaning-of-y (&environment environment)
