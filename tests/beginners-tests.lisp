@@ -258,7 +258,7 @@
     (is-true (has-words-p (told '(:success (length (robot:robot-hands rover))))
                           "is a number" "(< 0 (length"))
     (is-true (has-words-p (told '(:success (driver:run-plan 'turn-once)))
-                          "its failure as the value, which is true"))
+                          "a failed plan returns its failure, which is true"))
     (is-true (has-words-p (told '(:measure (x '(robot:robot-x rover)))) "measure x is quoted"))
     (dolist (clause '((:success (> (robot:robot-x rover) 5)) (:success t)
                       (:measure (x (robot:robot-x rover)) (kind ':fast))))

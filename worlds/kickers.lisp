@@ -66,7 +66,7 @@
           (run-kicker self))
         (set-attribute walker :heading #f))))
 
-(defun step-towards (walker point stride)
+(defun approach (walker point stride)
   "Move WALKER at most STRIDE metres towards POINT, a list (x y), or in a random direction if the
 way is blocked. Return true if WALKER has arrived."
   (multiple-value-bind (x y) (thing-position walker)
@@ -81,7 +81,7 @@ way is blocked. Return true if WALKER has arrived."
 (defkicker do-rounds (walker) (:prob .4 :test (get-attribute walker :rounds))
   ;; Walks from one of its :rounds, a list of points (x y), to the next, again and again.
   (let ((rounds (get-attribute walker :rounds)))
-    (when (step-towards walker (first rounds) .5)
+    (when (approach walker (first rounds) .5)
       (set-attribute walker :rounds (append (rest rounds) (list (first rounds)))))))
 
 (document-variables

@@ -10,7 +10,7 @@
   ;; kickers, and helpers to write more
   (:export #:roll-away #:blow-about #:be-borrowed #:change-light #:print-page #:wander-about
            #:do-rounds
-           #:user-dice #:random-step #:scale-step #:take-step #:step-towards)
+           #:user-dice #:random-step #:scale-step #:take-step #:approach)
   ;; manipulations; OPEN and CLOSE are Common Lisp's symbols
   (:export #:lock #:unlock #:switch-on #:switch-off)
   ;; worlds and their robots
