@@ -28,7 +28,7 @@
 
 (defun pane-margins (pane)
   "Return the left, top and bottom margins of PANE in pixels. They hold coordinates and scale bar."
-  (view-edges (view-map pane) (window-layers (window-of pane))))
+  (view-strip-widths (view-map pane) (window-layers (window-of pane))))
 
 (defun view-box (pane)
   "Return the box (left top right bottom) of the map in PANE, without coordinates and scale bar."
