@@ -165,7 +165,7 @@ would be beyond doubt, and three seeds are p = 1/4."
         (is (equal (truename file) (experiment:save-comparison-picture comparison file)))
         (let ((text (base:file-text file)))
           (is (mentions-p text "b against a"))
-          (is (mentions-p text "difference in success, in points of 100"))
+          (is (mentions-p text "difference in success, in percentage points"))
           (is (mentions-p text "-10"))))
       (signals base:unknown-name
         (experiment:save-comparison-picture comparison "x.svg" :measure 'weight))

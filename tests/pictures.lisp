@@ -315,7 +315,7 @@
     (dolist (name '(r10 r9 r1 r2))
       (world:make-new-thing name (list (robot:robot-world robot) 8 8) '()))
     (is (equal '("r1" "r2" "r9" "r10")
-               (mapcar #'display::thing-image-name
+               (mapcar #'display::drawn-thing-name
                        (find 'r1 (display::things-by-look (display:snapshot-of robot))
                              :key (lambda (images)
                                     (world:thing-name

@@ -20,7 +20,7 @@
   (mapcar #'symbol-name
           (append (text-layers) '(:legend) (mapcar #'picture-layer-name (text-layers)))))
 
-(defun complete-word (text words line takes)
+(defun keyword-for-word (text words line takes)
   "Return the first of WORDS that begins with TEXT, as a keyword. TEXT was typed after LINE. Signals
 BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE accepts."
   (let ((word (find-if (lambda (word) (starts-with-subseq (string-upcase text) word)) words)))
@@ -57,7 +57,7 @@ BAD-LINE if there is none. TAKES, a format control for WORDS, tells what LINE ac
         for word in (split-words (or text ""))
         for number = (parse-typed-number word)
         if number collect number into numbers
-        else collect (text-layer-name (complete-word word (words-for-map-line) "MAP" takes))
+        else collect (text-layer-name (keyword-for-word word (words-for-map-line) "MAP" takes))
                into words
         finally (return (append (map-region-options numbers)
                                 (list :layers (remove :legend words)

@@ -7,7 +7,7 @@
 (defun picture-layer-for-word (text line)
   "Return the layer for TEXT, typed after LINE. TEXT begins the name of a layer of MAP or PICTURE,
 or BARE, which omits the default layers."
-  (picture-layer-name (complete-word text
+  (picture-layer-name (keyword-for-word text
                            (mapcar #'symbol-name
                                    (append (picture-layers) '(:bare) (text-layers)))
                            line "a file, a scale, and words: ~{~A~^, ~}")))

@@ -88,7 +88,7 @@ entries that FUNCTION makes. The file is NIL if it is not known."
 (defun place-type-entry (name type file)
   (make-entry :name (string-downcase name) :chapter :place-types
               :use (string-downcase name)
-              :facts (list (list "Rank" (format nil "~:R of the types that fit"
+              :facts (list (list "Rank" (format nil "~:R; the first type that fits counts"
                                                 (1+ (place-type-rank type))))
                            (list "Confusion"
                                  (format nil "~A, the chance of a false designator"

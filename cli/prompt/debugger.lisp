@@ -159,7 +159,7 @@ sessions' threads post, until a call continues this thread."
     (dolist (session sessions) (remove-break session break-request))))
 
 ;; A user's window may be lost although there is another, or the terminal.
-(defun replacement-sessions (session)
+(defun sessions-able-to-answer (session)
   "If the user of SESSION was lost, return the sessions whose users can answer its breaks: sessions
 in the same run, else all sessions. Return NIL if the user ended SESSION."
   (flet ((can-answer-p (other)
@@ -186,7 +186,7 @@ in the same run, else all sessions. Return NIL if the user ended SESSION."
                           (call-outside-trial #'read-lines)
                           (read-lines)))))
   ;; Others may say how to continue if its user no longer can.
-  (let ((others (replacement-sessions session)))
+  (let ((others (sessions-able-to-answer session)))
     (when others
       (await-break-answer
        others (break-request-for-condition (break-request-condition break-request) others))))

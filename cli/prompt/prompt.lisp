@@ -192,7 +192,7 @@ QUIT. Other sessions then get the questions of SESSION and the messages of its r
 
 (defun answerable-by-others-p (session)
   "True if users of other sessions can answer a break of SESSION, whose user is lost."
-  (and (break-state-own (session-break-state session)) (replacement-sessions session) t))
+  (and (break-state-own (session-break-state session)) (sessions-able-to-answer session) t))
 
 (defun end-session (session)
   "End SESSION from another thread. Interrupt its line; run no line typed ahead or being typed."

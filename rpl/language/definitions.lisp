@@ -122,8 +122,8 @@ anything. The second value is a list of (variable word) for each word that must 
 (defun check-pattern (name pattern)
   (when (larger-than-p pattern *largest-pattern*)
     (reject-clause (definition-title "def-interp-macro" name) (abridged pattern)
-                   (format nil "a pattern of at most ~D words and variables, of which the last may ~
-                                be . ?x for all the rest" *largest-pattern*))))
+                   (format nil "a pattern of at most ~D words and variables; at its end, . ?x ~
+                                matches all the rest" *largest-pattern*))))
 
 (public def-interp-macro)
 (define-user-macro def-interp-macro ((name &rest pattern) &body template)

@@ -95,7 +95,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with only such a
 
 ;;; Arguments.
 
-(defun takes-fluents-p (type)
+(defun type-admits-fluents-p (type)
   (multiple-value-bind (may known) (ignore-errors (subtypep 'fluent type))
     (or may (not known))))
 
@@ -119,7 +119,7 @@ constants, calls of FLUENT-VALUE, and calls of lifted operators with only such a
                  then (or (rest types) types)
                while types
                when (and (known-fluent-p argument environment)
-                         (not (takes-fluents-p (first types))))
+                         (not (type-admits-fluents-p (first types))))
                  return argument))))
 
 ;; What a quoted list holds is never a fluent. With a :test of the author's it may still be found.

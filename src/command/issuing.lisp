@@ -220,7 +220,7 @@ it was issued with. Then forget the recorded parameters."
                               (command-name command) symbol (global-value symbol) value))))
 
 (defun record-bindings (command world)
-  "Record the parameters bound around COMMAND in WORLD between ticks. Warn at once in a live run."
+  "Unless WORLD is in a tick, record the parameters that COMMAND finds bound. Warn in a live run."
   (let ((timeline (world-timeline world)))
     (unless (or (asker-forked-p *asker*) (timeline-passing-p timeline))
       (let ((bindings (rebound-parameters timeline world)))

@@ -208,8 +208,8 @@ or NIL. The layer that defines fluents has methods.")
           while (consp rest) do (map-calls function (car rest)))))
 
 (defun map-comparisons (function form)
-  "Call FUNCTION for each comparison of a form with a word in the code FORM. Its arguments are the
-compared form, the word, and the form that compares them."
+  "Call FUNCTION for each comparison with a constant symbol or string, a word, in the code FORM. Its
+arguments are the compared form, the word, and the form that compares them."
   (map-calls (lambda (call)
                (multiple-value-bind (words subject) (compared-words call)
                  (dolist (word words) (funcall function subject word call))))

@@ -174,14 +174,14 @@ wide as the thing on the map if a line of the legend has room for such a sample.
 (defun things-by-look (snapshot)
   "Return lists of images of things that look the same, sorted by the first name in each list."
   (group-by (stable-sort (coerce (snapshot-things snapshot) 'list)
-                         #'name-before-p :key #'thing-image-name)
+                         #'name-before-p :key #'drawn-thing-name)
             #'thing-look))
 
 (defun names-with-counts (images)
   "Return lists (name more) for the names of IMAGES, images of things. MORE is a text with the
 number of things if several have the same name, else an empty text."
-  (loop for (image . others) in (group-by images #'thing-image-name)
-        collect (list (thing-image-name image)
+  (loop for (image . others) in (group-by images #'drawn-thing-name)
+        collect (list (drawn-thing-name image)
                       (format nil "~@[ (~D)~]" (and others (1+ (length others)))))))
 
 (defun thing-entries (snapshot)

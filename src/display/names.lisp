@@ -23,7 +23,7 @@ already has lower-case letters."
 (defun robot-title (image)
   (drawn-name (robot-image-name image)))
 
-(defun thing-image-name (image)
+(defun drawn-thing-name (image)
   (drawn-name (thing-name (thing-image-thing image))))
 
 (defun robot-label-target (robot robots)
@@ -38,7 +38,7 @@ already has lower-case letters."
   (list (thing-image-x image) (thing-image-y image) (thing-half-width image)))
 
 (defun thing-label-target (image hidden)
-  (make-label-target (format nil "~A~@[ and ~D more~]" (short-name (thing-image-name image))
+  (make-label-target (format nil "~A~@[ and ~D more~]" (short-name (drawn-thing-name image))
                              (and (plusp hidden) hidden))
                      (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
                      (thing-half-width image)))

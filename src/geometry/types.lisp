@@ -253,7 +253,7 @@ functions, print #< > with NUMBERS rounded to a millionth."
                   (mapcar #'shown-number numbers))))
       (apply #'format stream control parts)))
 
-(defun bounds (interval)
+(defun interval-bounds (interval)
   (list (%interval-min interval) (%interval-max interval)))
 
 (defmethod print-object ((pt pt) stream)
@@ -261,8 +261,10 @@ functions, print #< > with NUMBERS rounded to a millionth."
     (print-value pt stream numbers "(~{~,2F~^,~})" numbers)))
 
 (defmethod print-object ((interval interval) stream)
-  (print-value interval stream (bounds interval) "[~{~,2F~^,~}]" (bounds interval)))
+  (print-value interval stream (interval-bounds interval) "[~{~,2F~^,~}]"
+               (interval-bounds interval)))
 
 (defmethod print-object ((pt-interval pt-interval) stream)
   (let ((x (%pt-interval-x pt-interval)) (y (%pt-interval-y pt-interval)))
-    (print-value pt-interval stream (append (bounds x) (bounds y)) "(~A,~A)" x y)))
+    (print-value pt-interval stream (append (interval-bounds x) (interval-bounds y)) "(~A,~A)" x
+                 y)))

@@ -105,11 +105,11 @@ values. While this thread waits, it serves the front end and allows interrupts."
 (call-at-exit 'note-exiting)
 
 ;; At exit, what Lisp compiles in our threads, as for generic functions, can be lost.
-(defun report-unit-end (function left-p)
-  "Call FUNCTION to report that a compilation unit has ended, or was aborted if LEFT-P is true.
-Report nothing if the unit was aborted because this Lisp exits."
-  (unless (and left-p *exiting-p* (own-thread-p))
-    (funcall function left-p)))
+(defun report-unit-end (function aborted-p)
+  "Call FUNCTION to report that a compilation unit has ended. ABORTED-P is true if it was aborted.
+Report nothing if it was aborted because this Lisp exits."
+  (unless (and aborted-p *exiting-p* (own-thread-p))
+    (funcall function aborted-p)))
 
 (wrap-unit-summaries #'report-unit-end)
 

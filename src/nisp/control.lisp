@@ -120,7 +120,7 @@ SLOTS is an alist from names of slots to names of readers."
        (not (find-class type nil))
        (find-if (lambda (name) (misspelling-p type name)) (known-type-names))))
 
-(defun warn-of-misspelled-type (operator type)
+(defun warn-of-misspelt-type (operator type)
   (when (similar-type type)
     (warn-of-style "~A: there is no type ~(~A~). Did you mean ~(~A~)?"
                    operator type (similar-type type))))
@@ -135,7 +135,7 @@ SLOTS is an alist from names of slots to names of readers."
         if (hyphen-p element)
           do (when (or typed (atom tail) (hyphen-p (first tail)))
                (reject-clause operator list "each hyphen between a variable and its type"))
-             (warn-of-misspelled-type operator (pop tail))
+             (warn-of-misspelt-type operator (pop tail))
              (setf typed t)
         else
           do (setf typed (lambda-keyword-p element))

@@ -66,7 +66,7 @@ PARSE-CAMERA is such a function for cameras."
         (when (typep value (kind-slot-type slot))
           (list initarg value))))))
 
-(defun parse-values (kind specification reject)
+(defun parse-initargs (kind specification reject)
   (loop for (initarg value) on (rest specification) by #'cddr
         append (or (parse-initarg kind initarg value)
                    (funcall reject specification
@@ -85,7 +85,7 @@ PARSE-CAMERA is such a function for cameras."
       (funcall reject specification
                (format nil "(kind initarg value ...), a kind of part that DEFINE-KIND has defined; ~
                             cameras, hands and bins have options of their own")))
-    (cons (kind-name kind) (parse-values kind specification reject))))
+    (cons (kind-name kind) (parse-initargs kind specification reject))))
 
 ;;; Each option has its own syntax for parts.
 

@@ -103,7 +103,7 @@ PART holds moves along, and a track of PART is lost. Warnings are queued."
   (when (must-pull-out-p part) (pull-out-part part)))
 
 (defun enforce-robot-containment (robot)
-  "Pull the parts of ROBOT out of things beyond its reach; make its hands drop all but one thing."
+  "Pull the parts of ROBOT out of things beyond its reach; let each hand drop all but one thing."
   (declare #.*hot* (type robot robot))  ; in each tick
   (loop for hand across (robot-hands robot)
         do (when (hand-location hand) (pull-out-if-necessary hand))

@@ -13,8 +13,8 @@
 (deftype metres () '(double-float -1d5 1d5))
 (deftype halves () "A whole number of half metres." '(signed-byte 20))
 
-(declaim (inline half-cell-cost))
-(defun half-cell-cost (cells columns i j narrow)
+(declaim (inline cost-per-metre))
+(defun cost-per-metre (cells columns i j narrow)
   "Return the cost of a metre in (I J), a square half as wide and high as a cell of CELLS. NARROW is
 true for a line that needs only free cells, and no distance from walls."
   (declare (type amounts cells) (type (integer 0 40000) columns) (type halves i j))
@@ -74,7 +74,7 @@ belong to a terrain or field of COLUMNS columns. LEAVING is true if LINE may beg
                   (when (> piece 1d-9)
                     (let ((narrow (or along
                                       (and leaving (= (ash i -1) start-i) (= (ash j -1) start-j)))))
-                      (incf sum (* piece (half-cell-cost cells columns i j narrow))))
+                      (incf sum (* piece (cost-per-metre cells columns i j narrow))))
                     (when (> sum limit) (return +barred-cost+)))
                   (when (>= next 1d0) (return sum))
                   (setf part (max part next))

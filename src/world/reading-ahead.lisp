@@ -8,10 +8,10 @@
 ;;; What they read does not affect results.
 
 ;; The larger the better, until a processor's cache is full, as each loop ends with waiting.
-(defconstant +batch-size+ 512 "The number of moves for which memory is read at once.")
+(defconstant +moves-per-batch+ 512 "The number of moves for which memory is read at once.")
 
-(deftype batch () '(simple-vector #.+batch-size+))
-(deftype batch-count () '(integer 0 #.+batch-size+))
+(deftype batch () '(simple-vector #.+moves-per-batch+))
+(deftype batch-count () '(integer 0 #.+moves-per-batch+))
 
 (declaim (inline cell-index-or-zero))
 (defun cell-index-or-zero (thing)
@@ -59,12 +59,12 @@ p), or 0 if p is 1."
 ;;; To know which trials will succeed, numbers are drawn ahead. They depend on the state of the dice
 ;;; alone, so if the dice are in that state later, the results need not be computed again.
 
-(deftype gaps () '(simple-array (unsigned-byte 62) (#.+batch-size+)))
+(deftype gaps () '(simple-array (unsigned-byte 62) (#.+moves-per-batch+)))
 
 (defstruct (outlook (:constructor make-outlook ()) (:copier nil))
   "Gaps between successes, drawn ahead: the first COUNT elements of GAPS. Dice whose state is STATE
 would next draw the gap with the index NEXT."
-  (gaps (make-array +batch-size+ :element-type '(unsigned-byte 62) :initial-element 0)
+  (gaps (make-array +moves-per-batch+ :element-type '(unsigned-byte 62) :initial-element 0)
    :type gaps :read-only t)
   (count 0 :type batch-count)
   (next 0 :type batch-count)
@@ -81,7 +81,7 @@ INDEX. Return the index of the first success after these gaps."
   (let ((dice (copy-dice dice)) (gaps (outlook-gaps outlook)) (count 0))
     (declare (dynamic-extent dice) (type batch-count count))
     (setf (outlook-state outlook) (dice-state dice))
-    (loop while (and (< index end) (< count +batch-size+))
+    (loop while (and (< index end) (< count +moves-per-batch+))
           do (let ((gap (draw-gap scale dice)))
                (setf (aref gaps count) gap)
                (incf count)

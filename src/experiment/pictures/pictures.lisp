@@ -201,8 +201,8 @@ is a PNG file and rsvg-convert is missing."
           (tests-text (comparison-overall comparison) measure)))
 
 (defun comparison-chart (comparison measure &key (contrasts (all-contrasts comparison)))
-  "Return the chart, an SVG document, of differences in MEASURE in COMPARISON, or only in its
-CONTRASTS. The title is the experiment's question."
+  "Return a chart of the differences in MEASURE that COMPARISON found, as an SVG document. CONTRASTS
+are the contrasts of COMPARISON to show, by default all. The title is the experiment's question."
   (let ((experiment (comparison-experiment comparison)))
     (difference-chart (remove nil (mapcar (lambda (contrast)
                                             (picture-row contrast measure comparison))
@@ -210,7 +210,7 @@ CONTRASTS. The title is the experiment's question."
                       :title (or (question-of experiment)
                                  (format nil "The experiment ~A" experiment))
                       :subtitle (comparison-subtitle comparison measure)
-                      :x-label (format nil "difference in ~A~:[~;, in points of 100~]"
+                      :x-label (format nil "difference in ~A~:[~;, in percentage points~]"
                                        (string-downcase measure)
                                        (rate-compared-p measure comparison)))))
 

@@ -52,7 +52,7 @@
              (round-to-power-of-ten (+ (rational low) (* (rational share) width))
                                     (- (decimal-exponent width) (1- +design-digits+)))))))
 
-(defun design-choices (definition part bounds)
+(defun settings-of-design (definition part bounds)
   "Return a list of settings for each point of the design PART. BOUNDS are lists (low high), one for
 each of its ranges. Equal points count once; ranges of few integers give equal points."
   (let ((ranges (design-ranges part)))

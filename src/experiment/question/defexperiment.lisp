@@ -192,7 +192,7 @@ deadlock. The documentation of RUN-EXPERIMENT says what is kept."
 (defun axis-from-values (definition part values)
   "Return the axis for PART of :vary. VALUES is what the form from VALUES-FORM returns."
   (cond ((design-part-p part)
-         (let ((choices (design-choices definition part values)))
+         (let ((choices (settings-of-design definition part values)))
            (dolist (choice choices)
              (loop for (nil value) in choice
                    for range in (design-ranges part)

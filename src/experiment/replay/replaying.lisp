@@ -22,12 +22,12 @@
   (values '() :type list)
   (hook nil :read-only t))
 
-(defvar *inspection-context* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
+(defvar *context-outside-trial* nil "The OUTSIDE of the trial that this thread runs again, or NIL.")
 
 (defun call-outside-trial (function)
   "Call FUNCTION, which inspects a trial that runs again. The *INSPECTION-VARIABLES* have their
 values from outside the trial; values that FUNCTION sets are kept. Its errors are not the trial's."
-  (let ((outside *inspection-context*))
+  (let ((outside *context-outside-trial*))
     (progv *inspection-variables* (outside-values outside)
       (let ((*inspecting-p* t))
         (with-debugger-hook ((outside-hook outside))
@@ -37,10 +37,10 @@ values from outside the trial; values that FUNCTION sets are kept. Its errors ar
 
 (defun call-with-inspection-context (function)
   "Call FUNCTION, which runs a trial and may use CALL-OUTSIDE-TRIAL."
-  (let ((*inspection-context* (make-outside (mapcar #'symbol-value *inspection-variables*)
-                                            (debugger-hook))))
+  (let ((*context-outside-trial* (make-outside (mapcar #'symbol-value *inspection-variables*)
+                                               (debugger-hook))))
     (unwind-protect (funcall function)
-      (mapc #'set *inspection-variables* (outside-values *inspection-context*)))))
+      (mapc #'set *inspection-variables* (outside-values *context-outside-trial*)))))
 
 (defun call-as-in-worker (function)
   "Call FUNCTION with the global values of *SIMULATION-VARIABLES*, as in a new thread. Entering a

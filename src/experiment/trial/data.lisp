@@ -64,7 +64,7 @@ that has no parts itself. PATH maps the compounds around the current part to the
             (minusp (walk-elements walk)))
     (throw 'too-large nil)))
 
-(defun walk-value (value depth walk)
+(defun digest-datum (value depth walk)
   (if (and (typep value 'compound) (not (stringp value)) (not (bit-vector-p value)))
       (walk-compound value depth walk)
       (digest-atom-into value walk)))
@@ -78,10 +78,10 @@ that has no parts itself. PATH maps the compounds around the current part to the
              (setf (gethash value (walk-path walk)) depth)
              (etypecase value
                (array (walk-array value depth walk))
-               (hash-table (walk-table value depth walk))
+               (hash-table (digest-hash-table value depth walk))
                ((or structure-object condition)
                 (digest-text-into (prin1-to-string (type-of value)) walk)
-                (dolist (part (structure-values value)) (walk-value part (1+ depth) walk))))
+                (dolist (part (structure-values value)) (digest-datum part (1+ depth) walk))))
              (remhash value (walk-path walk))))))
 
 (defun walk-list (list depth walk)
@@ -91,8 +91,8 @@ that has no parts itself. PATH maps the compounds around the current part to the
         while (and (consp rest) (not (gethash rest (walk-path walk))))
         do (count-compound walk)
            (setf (gethash rest (walk-path walk)) depth)
-           (walk-value (car rest) (1+ depth) walk)
-        finally (if (consp rest) (digest-word-into 6 walk) (walk-value rest (1+ depth) walk)))
+           (digest-datum (car rest) (1+ depth) walk)
+        finally (if (consp rest) (digest-word-into 6 walk) (digest-datum rest (1+ depth) walk)))
   (loop for rest = list then (cdr rest)
         while (and (consp rest) (remhash rest (walk-path walk)))))
 
@@ -103,9 +103,9 @@ that has no parts itself. PATH maps the compounds around the current part to the
   (decf (walk-elements walk) (array-total-size array))
   (count-compound walk)
   (dotimes (index (array-total-size array))
-    (walk-value (row-major-aref array index) (1+ depth) walk)))
+    (digest-datum (row-major-aref array index) (1+ depth) walk)))
 
-(defun walk-table (table depth walk)
+(defun digest-hash-table (table depth walk)
   "Add the hash TABLE to WALK, independent of the order of its entries."
   (digest-text-into (prin1-to-string (hash-table-test table)) walk)
   (dolist (number (sort (entry-digests table depth walk) #'<)) (digest-word-into number walk)))
@@ -116,8 +116,8 @@ that has no parts itself. PATH maps the compounds around the current part to the
     (prog1 (loop for key being the hash-keys of table using (hash-value value)
                  when (funcall test key)
                    do (setf (digest-value digest) 0)
-                      (walk-value key (1+ depth) walk)
-                      (walk-value value (1+ depth) walk)
+                      (digest-datum key (1+ depth) walk)
+                      (digest-datum value (1+ depth) walk)
                    and collect (digest-value digest))
       (setf (digest-value digest) before))))
 
@@ -127,7 +127,7 @@ that has no parts itself. PATH maps the compounds around the current part to the
   "Return a digest of VALUE, or NIL if VALUE is too large. Call ATOM with each part without parts."
   (let ((walk (make-walk (make-digest) atom)))
     (catch 'too-large
-      (call-with-trial-syntax (lambda () (walk-value value 0 walk)) (find-package :keyword))
+      (call-with-trial-syntax (lambda () (digest-datum value 0 walk)) (find-package :keyword))
       (digest-value (walk-digest walk)))))
 
 (defun data-digest (value)
