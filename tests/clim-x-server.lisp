@@ -7,12 +7,25 @@
 ;;; The server is Xvfb, which has no visible screen. The tests read its screen as a second client.
 ;;; They wait by calling functions in the window's thread, and poll only for the server's start.
 
+(defvar *x-screen* "1300x900x24" "Width, height and depth of the X server's screen.")
+(defvar *x-options* '() "More options of the X server.")
+(defvar *x-resources* (format nil "*color: red~%Xft.dpi:~C96~%" #\Tab)
+  "The X resources of the screen, as a desktop sets them.")
+
+(defun set-x-resources (display-number)
+  (let ((display (xlib:open-display "" :display display-number)))
+    (xlib:change-property (xlib:screen-root (xlib:display-default-screen display))
+                          :resource_manager (map 'list #'char-code *x-resources*) :string 8)
+    (xlib:close-display display)))
+
 (defun start-x-server ()
-  "Start an X server; return its process and the number of its display."
-  (let ((process (uiop:launch-program '("Xvfb" "-displayfd" "1" "-screen" "0" "1300x900x24"
-                                        "-nolisten" "tcp")
-                                      :output :stream)))
-    (values process (parse-integer (read-line (uiop:process-info-output process))))))
+  "Start an X server with *X-RESOURCES*; return its process and the number of its display."
+  (let* ((process (uiop:launch-program `("Xvfb" "-displayfd" "1" "-screen" "0" ,*x-screen*
+                                         "-nolisten" "tcp" "-noreset" ,@*x-options*)
+                                       :output :stream))
+         (display-number (parse-integer (read-line (uiop:process-info-output process)))))
+    (set-x-resources display-number)
+    (values process display-number)))
 
 (defvar *display-number* nil "The number of the X server's display.")
 

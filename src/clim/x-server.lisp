@@ -21,10 +21,10 @@
   (:method ((port clim:basic-port)) nil)
   (:method ((port clim-clx:clx-port))
     (let ((screen (xlib:display-default-screen (clim-clx:clx-port-display port))))
-      (resolution-in-resources (or (xlib:get-property (xlib:screen-root screen) :resource_manager
-                                                      :type :string :result-type 'string
-                                                      :transform #'code-char)
-                                   "")))))
+      ;; CLX fails if it is to make a string itself.
+      (resolution-in-resources (map 'string #'code-char
+                                    (xlib:get-property (xlib:screen-root screen) :resource_manager
+                                                       :type :string :result-type 'list))))))
 
 (defun close-lost-port (port)
   "Close the windows on PORT, whose X server has gone, and end the thread that reads its events."
