@@ -20,6 +20,17 @@
     (is (= 1 (magnification "Xft.dpi: 0")))
     (is (= 6 (magnification "Xft.dpi: 100000")))))
 
+(test magnification.of-a-window-follows-the-x-resources-of-its-screen
+  (loop for (resources screen magnification) in '(("Xft.dpi: 192" "1300x960x24" 2)
+                                                  ("Xft.dpi: 192.5" "2560x1440x24" 2)
+                                                  ("Xft.dpi: none" "1300x960x24" 1)
+                                                  ("no resource" "1300x960x24" 1)
+                                                  ("" "640x480x24" 1))
+        do (let ((*x-resources* resources) (*x-screen* screen))
+             (in-x-window (window robot)
+               (is (= magnification (window::window-usual-magnification window))
+                   "~A on ~A" resources screen)))))
+
 (test magnification.leaves-room-on-the-screen-for-all
   (is (= 2 (window::usual-magnification 192 1920 1080)))
   (is (= 1 (window::usual-magnification 192 1280 900)))

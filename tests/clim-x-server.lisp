@@ -16,6 +16,7 @@
   (let ((display (xlib:open-display "" :display display-number)))
     (xlib:change-property (xlib:screen-root (xlib:display-default-screen display))
                           :resource_manager (map 'list #'char-code *x-resources*) :string 8)
+    (xlib:display-finish-output display)
     (xlib:close-display display)))
 
 (defun start-x-server ()

@@ -14,17 +14,17 @@
   (loop for line in (uiop:split-string resources :separator '(#\Newline))
         for (name value) = (uiop:split-string line :separator '(#\:))
         when (string= name "Xft.dpi")
-          return (parse-integer value :junk-allowed t)))
+          return (values (parse-integer value :junk-allowed t))))
 
 (defgeneric screen-resolution (port)
   (:documentation "Return the dots per inch that the X resources of PORT's screen give, or NIL.")
   (:method ((port clim:basic-port)) nil)
   (:method ((port clim-clx:clx-port))
     (let ((screen (xlib:display-default-screen (clim-clx:clx-port-display port))))
-      ;; CLX fails if it is to make a string itself.
-      (resolution-in-resources (map 'string #'code-char
-                                    (xlib:get-property (xlib:screen-root screen) :resource_manager
-                                                       :type :string :result-type 'list))))))
+      (resolution-in-resources (or (xlib:get-property (xlib:screen-root screen) :resource_manager
+                                                      :type :string :result-type 'string
+                                                      :transform #'code-char)
+                                   "")))))
 
 (defun close-lost-port (port)
   "Close the windows on PORT, whose X server has gone, and end the thread that reads its events."
