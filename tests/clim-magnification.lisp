@@ -31,6 +31,17 @@
                (is (= magnification (window::window-usual-magnification window))
                    "~A on ~A" resources screen)))))
 
+(test opening.says-what-an-x-server-lacks
+  (loop for (screen options . words) in '(("1300x900x8" () "8 bits per pixel" "24")
+                                          ("1300x900x24" ("-extension" "RENDER") "lacks" "RENDER"))
+        do (let ((*x-screen* screen) (*x-options* options))
+             (with-x-server ()
+               (in-studio (robot)
+                 (handler-case (progn (window::open-window robot) (fail "~A" screen))
+                   (base:misuse (condition)
+                     (is-true (apply #'has-words-p (princ-to-string condition)
+                                     "No window: the X server" words)))))))))
+
 (test magnification.leaves-room-on-the-screen-for-all
   (is (= 2 (window::usual-magnification 192 1920 1080)))
   (is (= 1 (window::usual-magnification 192 1280 900)))

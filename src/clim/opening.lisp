@@ -256,7 +256,6 @@ has chosen another robot of the run, WINDOW shows that robot. Only the prompt's 
                                 (lambda () (when window (request-refresh window)))
                                 (lambda (reason)
                                   (when window (leave-finished-run window reason))))))
-    (with-lock (*windows-lock*) (pushnew port *ports*))
     (start-watching watcher simulation)
     (setf window (make-robot-window
                   watcher :frame-manager (clim:find-frame-manager :port port)

@@ -148,14 +148,32 @@ which keys are down: this answer has 40 bytes."
                     it, or set DISPLAY to another X server."
                (environment-value "DISPLAY") (one-line-text condition)))))
 
+(defgeneric unsuitable-server-text (port)
+  (:documentation "Return what PORT's X server lacks for a window, and the remedy; NIL if nothing.")
+  (:method ((port clim:basic-port)) nil)
+  (:method ((port clim-clx:clx-port))
+    (let* ((display (clim-clx:clx-port-display port))
+           (bits (xlib:screen-root-depth (xlib:display-default-screen display))))
+      (cond ((< bits 15)
+             (format nil "has a screen of ~D bits per pixel. Set the screen to 24 or 16 bits" bits))
+            ((null (xlib:query-extension display "RENDER"))
+             "lacks the extension RENDER. Start the X server with RENDER")))))
+
 (defun window-port ()
-  "Return CLIM's port for the X server. Signals MISUSE if the X server cannot be reached."
+  "Return CLIM's port for the X server. Signals MISUSE if the X server cannot be reached, or cannot
+show a window."
   (unless (or clim:*default-server-path*
               (not (member (environment-value "DISPLAY") '(nil "") :test #'equal)))
     (reject-use "No display: the environment variable DISPLAY is not set. ~
                  Set DISPLAY to an X server."))
-  (handler-case (clim:find-port)
-    (error (condition) (reject-use "~A" (connection-failure-message condition)))))
+  (let* ((port (handler-case (clim:find-port)
+                 (error (condition) (reject-use "~A" (connection-failure-message condition)))))
+         (lack (unsuitable-server-text port)))
+    (with-lock (*windows-lock*) (pushnew port *ports*))
+    (when lack
+      (reject-use "No window: the X server ~A ~A, or set DISPLAY to another X server."
+                  (environment-value "DISPLAY") lack))
+    port))
 
 ;;; Waiting for the X server's answers in several threads of one connection.
 
