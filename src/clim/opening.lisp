@@ -64,7 +64,7 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
 
 (defvar *windows* '() "The windows that are open.")
 (defvar *windows-lock* (make-lock "windows"))
-(defvar *ports* '() "CLIM's ports on which windows were opened.")
+(defvar *ports* '() "CLIM's ports to X servers, whether or not a window could be opened there.")
 
 (defun open-window-list ()
   (with-lock (*windows-lock*) (copy-list *windows*)))
