@@ -201,7 +201,8 @@
   (signals base:unknown-name (experiment:replay-trial 'trying "by-" 1))
   (dolist (options '((:until -1) (:rate 0) (:step 5) (:journal 5) (:then nil) (:directory 5)))
     (signals base:wrong-argument (apply #'experiment:replay-trial 'trying 1 1 options)))
-  (signals base:wrong-argument (experiment:replay-trial 'trying 1 "one")))
+  (dolist (trial '("one" 0 -1 1.5))
+    (signals base:wrong-argument (experiment:replay-trial 'trying 1 trial))))
 
 ;;; Failures.
 

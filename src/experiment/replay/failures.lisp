@@ -154,7 +154,7 @@ and :NONE for no value. Return () if the trial timed out. RESULTS are results ke
 an experiment that was run with a directory, or the directory's name. CONDITION is the number of a
 condition, from 1, its name, or a part of its name. Each call reads all of series.csv. Signals
 MISUSE (no directory, no such file, trial or lines), UNKNOWN-NAME, WRONG-ARGUMENT, DAMAGED-TABLE."
-  (check-argument trial-series trial (and (integerp trial) (<= 0 trial +largest+))
+  (check-argument trial-series trial (and (integerp trial) (<= 1 trial +largest+))
                   "the number of a trial, counted from 1")
   (let* ((results (designated-results results))
          (file (series-file (directory-of-series results)))

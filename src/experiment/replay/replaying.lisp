@@ -221,7 +221,7 @@ result, whether the trial was stopped, and its journal if JOURNAL is true."
         :differences differences))
 
 (defun check-replay-arguments (trial until then step journal directory)
-  (check-argument replay-trial trial (and (integerp trial) (<= 0 trial +largest+))
+  (check-argument replay-trial trial (and (integerp trial) (<= 1 trial +largest+))
                   "the number of a trial, counted from 1")
   (check-argument replay-trial until (or (null until) (whole-p until 0))
                   "a tick, 0 or more, or NIL")
