@@ -102,7 +102,7 @@
 
 (test going-on.a-new-window-tells-what-was-said-of-definitions
   (in-window (window robot)
-    (let ((window::*last-settings* '()) (window::*window-states* '())
+    (let ((window::*last-preferences* nil) (window::*window-states* '())
           (cli::*definition-messages* (let ((base:*message-queue* (base:make-message-queue)))
                                    (base:warning-set "The poster is inside a wall.")
                                    (base:take-messages))))

@@ -98,7 +98,7 @@
 (test magnification.is-kept-for-the-next-window
   (in-window (window robot)
     (window::set-magnification window 2)
-    (let ((window::*last-settings* '()) (window::*window-states* '()))
+    (let ((window::*last-preferences* nil) (window::*window-states* '()))
       (window::save-settings window)
       (call-with-window
        (lambda (next)

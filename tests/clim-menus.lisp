@@ -38,7 +38,7 @@
 (test window.what-was-said-comes-back-for-each-robot-that-it-has-shown
   "ROBOT may have led the window to another one."
   (in-window (window robot)
-    (let ((window::*last-settings* '()) (window::*window-states* '()))
+    (let ((window::*last-preferences* nil) (window::*window-states* '()))
       (window::write-to-transcript (window::window-transcript window)
                                   (format nil "That was said.~%"))
       (window::show-robot-called window 'other (time:current-simulation))
@@ -56,7 +56,7 @@
     (window::fold-section window 'window::hands)
     (setf (window::preferences-details-width (window::window-preferences window)) 300)
     (window::write-to-transcript (window::window-transcript window) (format nil "That was said.~%"))
-    (let ((window::*last-settings* '()) (window::*window-states* '())
+    (let ((window::*last-preferences* nil) (window::*window-states* '())
           (layers (window::window-layers window)))
       (window::save-settings window)
       (call-with-window

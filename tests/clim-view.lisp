@@ -54,7 +54,7 @@
                    (is (<= (window::pane-left pane) (- left)))
                    (is (<= (window::pane-top pane) (- top)))
                    (is (<= bottom (- room low))))))
-      (setf (window::window-layers window) '())
+      (setf (window::preferences-layers (window::window-preferences window)) '())
       (is (equal '(0 0 0) (window::pane-margins pane))))))
 
 (test view.has-nothing-below-its-numbers

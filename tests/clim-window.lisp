@@ -51,8 +51,8 @@
           (window::pane-scale pane) 8
           (window::pane-left pane) 0
           (window::pane-top pane) 0
-          (window::window-layers window) (set-difference (window::window-layers window)
-                                                        '(:coordinates :scale-bar)))
+          (window::preferences-layers (window::window-preferences window))
+          (set-difference (window::window-layers window) '(:coordinates :scale-bar)))
     (window::repaint pane)
     pane))
 

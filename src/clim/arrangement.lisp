@@ -38,9 +38,12 @@
   :documentation "The bars that the user can drag to resize the parts on either side.")
 
 (defstruct preferences
-  "The user's layout preferences for a window. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are
-in pixels; NIL means a size that suits the window. FOLDED lists sections that show only their title.
+  "The user's preferences for a window. LAYERS are the layers of its display of the world. COLOR-P
+is true if this display has colours. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in pixels;
+NIL means a size that suits the window. FOLDED lists sections that show only their title.
 MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit the screen."
+  (layers *picture-layers* :type list)
+  (color-p t)
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))
   (transcript-height nil :type (or null real))

@@ -5,9 +5,8 @@
 ;;; Kept until this Lisp ends. A new window gets the preferences of the window that was closed last,
 ;;; and the transcript of its robot's last window.
 
-(defvar *last-settings-lock* (make-lock "settings"))
-(defvar *last-settings* '()
-  "The settings of the last closed window, a list (layers colored-p preferences), or NIL.")
+(defvar *last-window-lock* (make-lock "last window"))
+(defvar *last-preferences* nil "The preferences of the last closed window, or NIL.")
 
 (defstruct (window-state (:copier nil))
   "The state of a closed window for the next window of its robot. LINES are the lines of the
@@ -32,28 +31,22 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
     (when (window-state-typed state) (pass-key conversation (window-state-typed state)))))
 
 (defun save-settings (window)
-  (let* ((settings (list (window-layers window) (window-color-p window)
-                         (window-preferences window)))
-         (session (window-session window))
+  (let* ((session (window-session window))
          (state (make-window-state :lines (transcript-lines (window-transcript window))
                                    :typed (text-in-input-line (window-conversation window))
                                    :left-run-p (and (ars-magna.cli:in-trial-or-fork-p session) t)
                                    :quiet-p (ars-magna.cli:session-quiet-p session))))
-    (with-lock (*last-settings-lock*)
-      (setf *last-settings* settings)
+    (with-lock (*last-window-lock*)
+      (setf *last-preferences* (window-preferences window))
       (dolist (name (window-robots-shown window))
         (setf *window-states* (acons name state (remove name *window-states* :key #'first)))))))
 
 (defun restore-settings (window)
-  "Give the new WINDOW the settings of the window closed last, and the state saved for its robot."
-  (destructuring-bind (settings state)
-      (with-lock (*last-settings-lock*)
-        (list *last-settings* (rest (assoc (shown-robot-name window) *window-states*))))
-    (when settings
-      (destructuring-bind (layers color-p preferences) settings
-        (setf (window-layers window) layers
-              (window-color-p window) color-p
-              (window-preferences window) (copy-preferences preferences))))
+  "Give the new WINDOW the preferences of the last closed one, and the state saved for its robot."
+  (destructuring-bind (preferences state)
+      (with-lock (*last-window-lock*)
+        (list *last-preferences* (rest (assoc (shown-robot-name window) *window-states*))))
+    (when preferences (setf (window-preferences window) (copy-preferences preferences)))
     (if state
         (restore-window-state window state)
         (ars-magna.cli:show-definition-messages (window-session window)))))

@@ -2,6 +2,15 @@
 
 (in-package :ars-magna.clim)
 
+(defstruct (pointer (:copier nil))
+  "What the mouse points at in a window. HINT describes it as a text. SELECTION is the key of the
+selected object, or NIL. POINTED is where the mouse rests, as (pane x y text) with the text that is
+shown, or NIL. MOUSE is the last position of the mouse in screen pixels, as (x y), or NIL."
+  (hint "" :type string)
+  (selection nil :type list)
+  (pointed nil :type list)
+  (mouse nil :type list))
+
 ;;; CLIM's own buffers ask the X server several questions for each pane and picture. At full speed
 ;;; each answer comes late, and so do pictures. So a pane has a pixmap of its own size and asks
 ;;; nothing. This works for panes that the X server has as windows, as CLIM's port makes them;
@@ -317,5 +326,5 @@ Return NIL if SUBJECT cannot be selected.")
     (loop for box in (selected-boxes pane) do (apply #'mark-box pane box))))
 
 (defun select-subject (window subject)
-  (setf (window-selection window) (subject-key subject))
+  (setf (pointer-selection (window-pointer window)) (subject-key subject))
   (refresh window))

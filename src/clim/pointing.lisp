@@ -5,13 +5,13 @@
 ;;; Hovering.
 
 (defun show-hint (window text)
-  (setf (window-hint window) text)
+  (setf (pointer-hint (window-pointer window)) text)
   (repaint-if-changed (pane-named window 'strip)))
 
 (defun show-description-at (pane x y)
   "Describe in the status strip what PANE shows at X, Y, where the mouse is. Record this position."
   (let ((text (hover-text pane x y)))
-    (setf (window-pointed (window-of pane)) (list pane x y text))
+    (setf (pointer-pointed (window-pointer (window-of pane))) (list pane x y text))
     (show-hint (window-of pane) text)))
 
 (defmethod handle-hover ((pane display-pane) x y) (show-description-at pane x y))
@@ -20,19 +20,19 @@
 (defun update-description (pane)
   "Update the status strip's description if it is about an object in PANE, which has been painted."
   (let ((window (window-of pane)))
-    (destructuring-bind (&optional pointed x y text) (window-pointed window)
+    (destructuring-bind (&optional pointed x y text) (pointer-pointed (window-pointer window))
       (when (and (eq pane pointed) (eq text (window-hint window)))
         (show-description-at pane x y)))))
 
 (defun clear-description (window)
   "Clear the description of the object under the mouse in the status strip of WINDOW."
-  (setf (window-pointed window) nil
-        (window-hint window) ""))
+  (setf (pointer-pointed (window-pointer window)) nil
+        (pointer-hint (window-pointer window)) ""))
 
 (defun pane-at-mouse (window)
   "Return three values: the pane of WINDOW under the mouse, and the coordinates of the mouse in that
 pane. Return NIL if the position of the mouse is unknown."
-  (destructuring-bind (&optional x y) (window-mouse window)
+  (destructuring-bind (&optional x y) (pointer-mouse (window-pointer window))
     (when x
       (dolist (pane (display-panes window))
         (when (clim:sheet-enabled-p pane)
@@ -168,7 +168,7 @@ popup. OPENER is the command or menu that had opened the popup.")
                  (clim:transform-position
                   (clim:sheet-delta-transformation pane (clim:frame-top-level-sheet window))
                   (clim:pointer-event-x event) (clim:pointer-event-y event)))))
-    (not (equalp place (shiftf (window-mouse window) place)))))
+    (not (equalp place (shiftf (pointer-mouse (window-pointer window)) place)))))
 
 (defmethod clim:handle-event :around ((pane display-pane) (event clim:pointer-motion-event))
   (let ((moved-p (record-mouse-position pane event)))

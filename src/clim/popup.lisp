@@ -172,7 +172,7 @@ the symbol of a command, the menu to show, or T."
 
 (defun toggle-layer (window layer)
   (let ((layers (window-layers window)))
-    (setf (window-layers window)
+    (setf (preferences-layers (window-preferences window))
           (if (member layer layers) (remove layer layers) (cons layer layers)))
     (repaint-if-changed (pane-named window 'world))))
 
@@ -193,7 +193,7 @@ window has a title and the mouse shows what things are."
                                         :action (lambda () (toggle-color window)) :stays-p t)))))
 
 (defun toggle-color (window)
-  (setf (window-color-p window) (not (window-color-p window)))
+  (setf (preferences-color-p (window-preferences window)) (not (window-color-p window)))
   (repaint-all window))
 
 ;;; Robots.

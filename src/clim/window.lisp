@@ -21,17 +21,20 @@
   (loop for (name class . options) in *window-parts*
         collect (apply #'clim:make-pane class :name name options)))
 
+(defstruct (painting (:copier nil))
+  "The progress of painting a window. QUEUED-P is true while an event that requests painting is
+queued. ERASED-P is true if all must be painted, changed or not. SNAPSHOT was painted last."
+  (queued-p nil)
+  (erased-p nil)
+  (snapshot nil))
+
 (clim:define-application-frame robot-window ()
   ((watcher :initarg :watcher :accessor window-watcher)
-   ;; The layers of its display of the world.
-   (layers :initarg :layers :initform *picture-layers* :accessor window-layers)
-   (color-p :initarg :color-p :initform t :accessor window-color-p)
    ;; How many screen pixels wide one of its pixels is, unless its user chooses.
    (usual-magnification :initarg :usual-magnification :initform 1
                         :reader window-usual-magnification)
    ;; The user's preferences for the arrangement.
    (preferences :initform (make-preferences) :accessor window-preferences)
-   (transcript :initform nil :accessor window-transcript)
    (conversation :initform nil :accessor window-conversation)
    ;; The names of the robots that it has shown.
    (robots-shown :initform '() :accessor window-robots-shown)
@@ -39,24 +42,14 @@
    (known-over :initform nil :accessor window-known-over)
    ;; For how many columns and rows its transcript has room.
    (text-size :initform '(80 24) :accessor window-text-size)
-   ;; What the mouse is on, as text; the key of the selection, or NIL.
-   (hint :initform "" :accessor window-hint)
-   (selection :initform nil :accessor window-selection)
-   ;; Where the mouse rests, as (pane x y text), with the text shown; or NIL.
-   (pointed :initform nil :accessor window-pointed)
-   ;; Where in the window the mouse was last, in screen pixels, as (x y); NIL at first.
-   (mouse :initform nil :accessor window-mouse)
+   (pointer :initform (make-pointer) :reader window-pointer)
    ;; The pane that has the keys while the window has the focus, or NIL before there is one.
    (focus :initform nil :accessor window-focus)
    ;; True if a line was begun by a key that came to a display.
    (typing-p :initform nil :accessor window-typing-p)
    ;; The parts found so far, by name.
    (panes-found :initform (make-hash-table :test 'eq) :reader window-panes)
-   ;; Its car is true while an event is queued.
-   (queued :initform (list nil) :reader window-queued)
-   ;; True if the screen may have been erased: everything must be painted, changed or not.
-   (erased-p :initform nil :accessor window-erased-p)
-   (painted :initform nil :accessor window-painted)
+   (painting :initform (make-painting) :reader window-painting)
    (thread :initform nil :accessor window-thread))
   (:menu-bar nil)
   (:panes
@@ -80,13 +73,12 @@
 
 (defun make-robot-window (watcher &rest options)
   "Return a new window, not yet visible, for the robot of WATCHER. OPTIONS are CLIM's options for
-frames, and :layers, :color-p and :usual-magnification."
+frames, and :usual-magnification."
   (let ((window (apply #'clim:make-application-frame 'robot-window
                        :pretty-name (window-title (watcher-robot watcher))
                        :watcher watcher options)))
-    (setf (window-transcript window) (make-transcript (lambda () (request-refresh window)))
-          (window-conversation window)
-          (make-window-conversation (window-transcript window)
+    (setf (window-conversation window)
+          (make-window-conversation (make-transcript (lambda () (request-refresh window)))
                                     (lambda () (values-list (window-text-size window)))
                                     (lambda () (match-window-and-prompt window))
                                     (lambda () (close-window window))))
@@ -94,6 +86,14 @@ frames, and :layers, :color-p and :usual-magnification."
     (write-in-window window "Type a command below and press Return, or choose a command from a ~
                              menu. HELP lists all commands.~%")
     window))
+
+(defun window-transcript (window)
+  (console-transcript (conversation-console (window-conversation window))))
+
+(defun window-layers (window) (preferences-layers (window-preferences window)))
+(defun window-color-p (window) (preferences-color-p (window-preferences window)))
+(defun window-hint (window) (pointer-hint (window-pointer window)))
+(defun window-selection (window) (pointer-selection (window-pointer window)))
 
 (defun window-snapshot (window)
   (watcher-snapshot (window-watcher window)))
@@ -137,11 +137,11 @@ frames, and :layers, :color-p and :usual-magnification."
 (defun request-refresh (window)
   "Request that WINDOW be refreshed soon. Any thread may call this."
   (when (and (clim:frame-top-level-sheet window)
-             (swap-if-eq (car (window-queued window)) nil t))
+             (swap-if-eq (painting-queued-p (window-painting window)) nil t))
     (call-in-window #'refresh-as-requested window)))
 
 (defun refresh-as-requested (window)
-  (setf (car (window-queued window)) nil)
+  (setf (painting-queued-p (window-painting window)) nil)
   (memory-barrier)
   (refresh window))
 
@@ -152,19 +152,19 @@ frames, and :layers, :color-p and :usual-magnification."
                             (shown-robot-name window))
     (restart-pacer-if-lost (window-watcher window))
     (restart-event-thread (clim:port window))
-    (if (shiftf (window-erased-p window) nil)
+    (if (shiftf (painting-erased-p (window-painting window)) nil)
         (repaint-all window)
         (mapc #'repaint-if-changed (display-panes window)))
     (rearrange-if-needed window)
     ;; The X server may be slower than we are.
     (clim:medium-finish-output (clim:sheet-medium (pane-named window 'world)))
-    (unless (eq snapshot (window-painted window))
-      (setf (window-painted window) snapshot)
+    (unless (eq snapshot (painting-snapshot (window-painting window)))
+      (setf (painting-snapshot (window-painting window)) snapshot)
       (report-painted (window-watcher window)))))
 
 (defun request-repaint (window)
   "Request that the whole WINDOW be painted soon. Any thread may call this."
-  (setf (window-erased-p window) t)
+  (setf (painting-erased-p (window-painting window)) t)
   (request-refresh window))
 
 ;;; CLIM's loop reads commands, but there are none: everything is an event.

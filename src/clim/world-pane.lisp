@@ -59,7 +59,7 @@
   "Record that the user has changed the view of PANE, so that it is no longer fitted to the map."
   (setf (pane-fitting-p pane) nil)
   (when (equal *whole-map-hint* (window-hint (window-of pane)))
-    (setf (window-hint (window-of pane)) "")
+    (setf (pointer-hint (window-pointer (window-of pane))) "")
     (repaint-if-changed (pane-named (window-of pane) 'strip))))
 
 (defun move-view (pane dx dy)
