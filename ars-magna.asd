@@ -232,7 +232,7 @@
   :components
   ((:module "src/clim" :serial t
     :components ((:file "package") (:file "plan-look") (:file "watcher") (:file "arrangement")
-                 (:file "magnification") (:file "canvas") (:file "panes") (:file "world-pane")
+                 (:file "looks") (:file "magnification") (:file "canvas") (:file "panes") (:file "world-pane")
                  (:file "transcript") (:file "clipboard") (:file "transcript-pane")
                  (:file "prompt") (:file "bar") (:file "popup") (:file "pointing")
                  (:file "interactor") (:file "offers") (:file "plan-pane")

@@ -173,11 +173,15 @@ leads to both."
   "Return the texts of the menu that a click with the right button at X, Y of PANE brings."
   (let ((window (window::window-of pane)))
     (window::handle-click pane :right x y)
-    (mapcar #'window::row-text (window::pane-rows (window::window-popup window)))))
+    (mapcar #'whole-row-text (window::pane-rows (window::window-popup window)))))
+
+(defun whole-row-text (row)
+  "Return what both columns of ROW say."
+  (format nil "~A~@[   ~A~]" (window::row-text row) (window::row-more row)))
 
 (defun row-with (window text)
   (find text (window::pane-rows (window::window-popup window))
-        :key #'window::row-text :test (lambda (part row) (search part row))))
+        :key #'whole-row-text :test (lambda (part row) (search part row))))
 
 (test pointing.the-right-button-offers-lines
   (in-window (window robot)

@@ -141,8 +141,8 @@
 ;;; Layers.
 
 (test layers.have-one-table-of-words
-  (is (mentions-p (window::layer-row-text :wedges) "wedges or cones"))
-  (is (equal "Grid" (window::layer-row-text :grid)))
+  (is (equal "wedges or cones" (window::layer-names-text :wedges)))
+  (is (null (window::layer-names-text :grid)))
   (is (equal (list :layers '(:cones :belief) :only-legend nil)
              (cli::map-options "wedges designators")))
   (is (subsetp '(:trail :planned-way) (getf (cli::picture-options "way plan") :layers))))

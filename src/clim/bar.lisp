@@ -46,7 +46,7 @@ and return the label or whether the button is on."
 ;;; The pane.
 
 (defclass bar-pane (display-pane) ()
-  (:default-initargs :background clim:+gray88+)
+  (:default-initargs :background (clim-ink +bar-color+))
   (:documentation "The tool bar."))
 
 (defmethod pane-appearance ((pane bar-pane))
@@ -62,7 +62,7 @@ and return the label or whether the button is on."
     (loop with x = 4
           for button in *bar-buttons*
           for (text lit-p) in (pane-appearance pane)
-          for width = (+ 12 (* +character-width+ (max 5 (length text))))
+          for width = (max 48 (button-width text))
           do (setf x (+ 4 (draw-button canvas button text lit-p x 3 width
                                        (- +tool-bar-height+ 7)))))))
 
@@ -78,7 +78,7 @@ and return the label or whether the button is on."
 ;;; line among the commands; a click on what the mouse is on shows all of the lower one.
 
 (defclass strip-pane (display-pane) ()
-  (:default-initargs :background clim:+gray88+)
+  (:default-initargs :background (clim-ink +bar-color+))
   (:documentation "The status strip."))
 
 (defun tick-text (window)
@@ -109,11 +109,10 @@ and return the label or whether the button is on."
   (list (status-strip-lines (window-of pane)) (multiple-value-list (pane-size pane))))
 
 (defmethod paint ((pane strip-pane))
-  (let ((columns (max 4 (floor (- (pane-size pane) 12) +character-width+))))
-    (with-pane-canvas (canvas pane)
-      (loop for line in (status-strip-lines (window-of pane))
-            for y from 14 by +line-height+
-            do (draw-glyphs canvas draw-gcontext* 6 y (cut line columns))))))
+  (with-pane-canvas (canvas pane)
+    (loop for line in (status-strip-lines (window-of pane))
+          for y from 14 by +line-height+
+          do (draw-label canvas 6 y (cut-label line (- (pane-size pane) 12))))))
 
 (defmethod hover-text ((pane strip-pane) x y)
   (declare (ignore x y))

@@ -21,14 +21,6 @@
    (dy :initform 0 :accessor canvas-dy))
   (:documentation "A canvas that paints on a CLIM medium."))
 
-(defvar *ink-cache* (make-hash-table :synchronized t) "A cache of CLIM's colour objects by colour.")
-
-(defun clim-ink (color)
-  (or (gethash color *ink-cache*)
-      (setf (gethash color *ink-cache*)
-            (flet ((part (position) (/ (ldb (byte 8 position) color) 255)))
-              (clim:make-rgb-color (part 16) (part 8) (part 0))))))
-
 ;;; CLIM magnifies the positions of lines and letters, but not their thickness and size.
 
 (defun clim-line-thickness (canvas gcontext)
@@ -125,12 +117,6 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
                       :line-thickness (clim-line-thickness canvas gcontext)
                       :line-dashes (clim-line-dashes canvas gcontext))))
 
-(defparameter *text-styles*
-  (coerce (loop for magnification from 1 to +greatest-magnification+
-                collect (clim:make-text-style :fix :roman (round (* 35/3 magnification))))
-          'vector)
-  "CLIM text styles by magnification. For magnification N, letters are N x +CHARACTER-WIDTH+ wide.")
-
 (defun text-fully-visible-p (canvas y)
   (let ((bottom (canvas-bottom canvas)) (y (+ y (canvas-dy canvas))))
     (or (null bottom) (<= 10 y (- bottom 3)))))
@@ -139,8 +125,24 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
   (extend-bounding-box canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
   (when (text-fully-visible-p canvas y)
     (clim:draw-text* (canvas-medium canvas) string x y
-                     :text-style (svref *text-styles* (1- (canvas-magnification canvas)))
+                     :text-style (text-style :fix :roman +column-font-size+
+                                             (canvas-magnification canvas))
                      :ink (clim-ink (gcontext-foreground gcontext)))))
+
+(defmethod paint-text ((canvas clim-canvas) gcontext x y string size anchor upward-p bold-p)
+  (declare (ignore upward-p))
+  (let* ((size (max size +label-size+)) (width (text-width string size bold-p))
+         (left (- x (ecase anchor (:start 0) (:middle (/ width 2)) (:end width)))))
+    (extend-bounding-box canvas left (- y size) (+ left width) (+ y 3))
+    (when (text-fully-visible-p canvas y)
+      (clim:draw-text* (canvas-medium canvas) string x y
+                       :align-x (ecase anchor (:start :left) (:middle :center) (:end :right))
+                       :text-style (text-style :sans-serif (if bold-p :bold :roman) size
+                                               (canvas-magnification canvas))
+                       :ink (clim-ink (gcontext-foreground gcontext))))))
+
+(defmethod character-width ((canvas clim-canvas) size)
+  (* 61/100 (max size +label-size+)))
 
 ;;; Where.
 

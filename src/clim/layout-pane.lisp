@@ -179,7 +179,7 @@ least height of the designators.")
 ;;; Bars between parts of the window that can be dragged.
 
 (defclass splitter-pane (display-pane) ()
-  (:default-initargs :background clim:+gray75+)
+  (:default-initargs :background (clim-ink +splitter-color+))
   (:documentation "A bar between two parts of the window. The user can drag the bar."))
 
 (defgeneric drag-splitter (name preferences layout x y)
@@ -227,7 +227,7 @@ least height of the designators.")
 
 (defclass title-pane (display-pane)
   ((section :initarg :section :reader pane-section))
-  (:default-initargs :background clim:+gray88+)
+  (:default-initargs :background (clim-ink +title-color+))
   (:documentation "The title of a display. A click on the title folds or unfolds the display."))
 
 (defun section-foldable-p (section) (and (member section +sections+) t))
@@ -262,8 +262,7 @@ and the robot, if the run has several robots."
         (draw-lines canvas draw-gcontext*
                     (if (section-folded-p window section) '(5 4 10 8 5 12) '(4 6 12 6 8 11))
                     :fill-p t))
-      (draw-glyphs canvas draw-gcontext* (if foldable-p 18 6) 13
-                   (section-title window section)))))
+      (draw-label canvas (if foldable-p 18 6) 13 (section-title window section) :bold-p t))))
 
 (defmethod hover-text ((pane title-pane) x y)
   (declare (ignore x y))

@@ -10,9 +10,6 @@
   :test #'equal
   :documentation "The least width and height, in window pixels, that show everything.")
 
-(defconstant +greatest-magnification+ 6
-  "The largest magnification, in screen pixels per window pixel.")
-
 (defun magnification (pane)
   "Return the magnification of the window of PANE, in screen pixels per window pixel."
   (window-magnification (clim:pane-frame pane)))

@@ -99,7 +99,7 @@
 ;;; The bar.
 
 (defclass menu-pane (display-pane) ()
-  (:default-initargs :background clim:+gray75+)
+  (:default-initargs :background (clim-ink +menu-bar-color+))
   (:documentation "The menu bar."))
 
 (defmethod pane-appearance ((pane menu-pane))
@@ -107,13 +107,11 @@
 
 (defun draw-menu-title (canvas menu x open-p)
   "Draw the title of MENU from X on, highlighted if OPEN-P. Return the x coordinate of its end."
-  (let ((width (+ 14 (* +character-width+ (length (menu-title menu))))))
+  (let ((width (+ 16 (label-width (menu-title menu)))))
     (with-subject (canvas menu)
-      (with-gcontext (draw-gcontext* :foreground (if open-p
-                                                     (svref lightblue* 9)
-                                                     (svref grey* 48)))
+      (with-gcontext (draw-gcontext* :foreground (if open-p +lit-color+ +menu-bar-color+))
         (draw-rectangle canvas draw-gcontext* x 0 width +menus-height+ t))
-      (draw-glyphs canvas draw-gcontext* (+ x 7) 14 (menu-title menu)))
+      (draw-label canvas (+ x 8) 14 (menu-title menu)))
     (+ x width)))
 
 (defmethod paint ((pane menu-pane))

@@ -210,7 +210,8 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
 ;;; As a menu.
 
 (defun offer-row (window title line)
-  (make-row (format nil "~A   ~A" title line)
+  (make-row title
+            :more line
             :action (lambda ()
                       (run-line-at-prompt (window-conversation window) line)
                       ;; If you continue typing, you mean the next line.

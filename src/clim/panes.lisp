@@ -101,16 +101,17 @@ would be cut off. Record in PANE what was painted where."
   "Run BODY, which paints PANE on CANVAS, clipped to the bounds of PANE."
   `(call-with-pane-canvas (lambda (,canvas) ,@body) ,pane))
 
+(defun button-width (text)
+  (+ 14 (label-width text)))
+
 (defun draw-button (canvas subject text lit-p x y width height)
   "Draw a button for SUBJECT with TEXT in its middle. Return the x coordinate of its right edge."
   (with-subject (canvas subject)
-    (with-gcontext (draw-gcontext* :foreground (if lit-p (svref lightblue* 9) (svref grey* 60)))
+    (with-gcontext (draw-gcontext* :foreground (if lit-p +lit-color+ +button-color+))
       (draw-rectangle canvas draw-gcontext* x y width height t))
-    (with-gcontext (draw-gcontext* :foreground (svref grey* 30))
+    (with-gcontext (draw-gcontext* :foreground +border-color+)
       (draw-rectangle canvas draw-gcontext* x y width height))
-    (draw-glyphs canvas draw-gcontext*
-                 (+ x (floor (- width (* +character-width+ (length text))) 2)) (+ y height -5)
-                 text))
+    (draw-label canvas (+ x (/ width 2)) (+ y (floor (+ height 8) 2)) text :anchor :middle))
   (+ x width))
 
 ;;; Repainting.
@@ -265,9 +266,9 @@ visible part begins, the length of the visible part, and the length of the conte
   (when (scrollable-p pane)
     (multiple-value-bind (width height) (pane-size pane)
       (multiple-value-bind (top bottom) (thumb-bounds pane)
-        (clim:draw-rectangle* pane (- width +scroll-bar-width+) 0 width height :ink clim:+gray90+)
+        (clim:draw-rectangle* pane (- width +scroll-bar-width+) 0 width height :ink (clim-ink +bar-color+))
         (clim:draw-rectangle* pane (- width +scroll-bar-width+ -2) top (- width 2) bottom
-                              :ink clim:+gray55+)))))
+                              :ink (clim-ink +thumb-color+))))))
 
 (defun on-scroll-bar-p (pane x)
   (and (scrollable-p pane) (>= x (content-width pane))))

@@ -55,13 +55,13 @@
 (defun draw-plan-button (canvas button x y)
   (let ((label (button-label button)))
     (draw-button canvas button label (button-lit-p button) x y
-                 (+ 10 (* +character-width+ (length label))) 17)))
+                 (button-width label) 17)))
 
 (defun draw-plan-buttons (canvas pane)
   (let ((x 4) (robot (plan-look-robot (plan-look-of pane))))
     (dolist (button (plan-buttons pane)) (setf x (+ 5 (draw-plan-button canvas button x 3))))
     (when robot
-      (draw-glyphs canvas draw-gcontext* (+ x 4) 15 (format nil "of ~(~A~)" robot)))))
+      (draw-label canvas (+ x 4) 15 (format nil "of ~(~A~)" robot)))))
 
 ;;; If there is nothing to show, it says how to change that.
 
@@ -70,7 +70,7 @@
   (dolist (line lines y)
     (cond ((null line))
           ((button-p line) (draw-plan-button canvas line 8 (+ y 2)) (incf y 24))
-          (t (draw-glyphs canvas draw-gcontext* 8 (+ y 13) line) (incf y +line-height+)))))
+          (t (draw-label canvas 8 (+ y 13) line) (incf y +line-height+)))))
 
 (defun draw-plan-text (canvas pane y text)
   "Draw TEXT from Y down, wrapped to the width of PANE. Return the y coordinate of its end."

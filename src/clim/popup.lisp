@@ -5,11 +5,12 @@
 ;;; A window has one popup, shown or not. It is a pane above the others, so nothing waits for it and
 ;;; the world continues behind it. It is painted again whenever a pane below it is.
 
-(defstruct (row (:constructor make-row (text &key action tick stays-p)) (:copier nil))
-  "A row of the popup, with TEXT. A click on the row calls ACTION, NIL or a function of no
-arguments, and closes the popup unless STAYS-P. TICK is NIL if the row has no check box, else a
-function that returns true if the box is ticked."
+(defstruct (row (:constructor make-row (text &key more action tick stays-p)) (:copier nil))
+  "A row of the popup, with TEXT, and MORE in a second column. A click on the row calls ACTION, NIL
+or a function of no arguments, and closes the popup unless STAYS-P. TICK is NIL if the row has no
+check box, else a function that returns true if the box is ticked."
   (text "" :type string :read-only t)
+  (more nil :type (or null string) :read-only t)
   (action nil :type (or null function) :read-only t)
   (tick nil :type (or null function) :read-only t)
   (stays-p nil :read-only t))
@@ -24,7 +25,7 @@ function that returns true if the box is ticked."
    (opener :initform t :accessor pane-opener)
    ;; The time of the click that has replaced the rows, in milliseconds, or NIL.
    (turned :initform nil :accessor pane-turned))
-  (:default-initargs :background clim:+gray97+)
+  (:default-initargs :background (clim-ink +popup-color+))
   (:documentation "The popup of a window: a list of rows above its other panes."))
 
 (defun window-popup (window) (pane-named window 'popup))
@@ -39,7 +40,16 @@ function that returns true if the box is ticked."
 
 (defmethod pane-appearance ((pane popup-pane))
   (list (pane-offset pane) (pane-pointed pane)
-        (loop for row in (pane-rows pane) collect (list (row-text row) (row-ticked-p row)))))
+        (loop for row in (pane-rows pane)
+              collect (list (row-text row) (row-more row) (row-ticked-p row)))))
+
+(defun row-text-x (row) (if (row-tick row) 22 8))
+
+(defun row-text-end (row) (+ (row-text-x row) (label-width (row-text row))))
+
+(defun second-column-x (rows)
+  "Return the x coordinate of the second column of ROWS, in pixels."
+  (+ 16 (loop for row in rows when (row-more row) maximize (row-text-end row))))
 
 (defun draw-tick-box (canvas row y)
   (draw-rectangle canvas draw-gcontext* 6 (+ y 4) 9 9)
@@ -47,21 +57,25 @@ function that returns true if the box is ticked."
     (with-lines (:width 2)
       (draw-lines canvas draw-gcontext* (list 7 (+ y 8) 10 (+ y 12) 16 (+ y 3))))))
 
-(defun draw-row (canvas row y width pointed-p)
+(defun draw-row (canvas row y width more-x pointed-p)
   (when (and pointed-p (row-action row))
-    (with-gcontext (draw-gcontext* :foreground (svref lightblue* 10))
+    (with-gcontext (draw-gcontext* :foreground +pointed-color+)
       (draw-rectangle canvas draw-gcontext* 1 y (- width 2) +row-height+ t)))
   (when (row-tick row) (draw-tick-box canvas row y))
-  (draw-glyphs canvas draw-gcontext* (if (row-tick row) 22 8) (+ y 13) (row-text row)))
+  (draw-label canvas (row-text-x row) (+ y 13) (row-text row))
+  (when (row-more row)
+    (with-gcontext (draw-gcontext* :foreground +secondary-text-color+)
+      (draw-label canvas more-x (+ y 13) (row-more row)))))
 
 (defmethod paint ((pane popup-pane))
   (multiple-value-bind (width height) (pane-size pane)
     (with-pane-canvas (canvas pane)
       (with-origin (canvas 0 (- 3 (pane-offset pane)))
-        (loop for row in (pane-rows pane)
+        (loop with more-x = (second-column-x (pane-rows pane))
+              for row in (pane-rows pane)
               for y from 0 by +row-height+
-              do (draw-row canvas row y width (eq row (pane-pointed pane))))))
-    (clim:draw-rectangle* pane 0 0 (1- width) (1- height) :filled nil :ink clim:+gray30+)))
+              do (draw-row canvas row y width more-x (eq row (pane-pointed pane))))))
+    (clim:draw-rectangle* pane 0 0 (1- width) (1- height) :filled nil :ink (clim-ink +border-color+))))
 
 (defun repaint-popup-if-covered (pane)
   "Paint the popup again if it is open and the painting of PANE may have covered it."
@@ -80,8 +94,12 @@ function that returns true if the box is ticked."
   "Move POPUP to X, Y and make it as large as its rows need, but keep it inside the window."
   (multiple-value-bind (room-x room-y) (pane-size (clim:sheet-parent popup))
     (let* ((rows (pane-rows popup))
-           (columns (loop for row in rows maximize (length (row-text row))))
-           (width (min room-x (+ 34 +scroll-bar-width+ (* +character-width+ columns))))
+           (more-x (second-column-x rows))
+           (end (loop for row in rows
+                      maximize (if (row-more row)
+                                   (+ more-x (label-width (row-more row)))
+                                   (row-text-end row))))
+           (width (min room-x (+ end 12 +scroll-bar-width+)))
            (extent (+ 6 (* +row-height+ (length rows))))
            (height (min room-y extent)))
       (setf (pane-extent popup) extent
@@ -148,25 +166,31 @@ the symbol of a command, the menu to show, or T."
 ;;;; Help, layers and robots
 
 (defparameter *mouse-help*
-  '("" "Mouse" "  hover               the strip at the bottom describes what is there"
-    "  click               select a thing and describe it among the commands"
-    "  right button        open a menu of actions"
-    "  drag the map        move the view; the mouse wheel zooms"
-    "  drag a thing        move the thing, while time stands still"
-    "  titles, splitters   click to fold a display, drag to resize it"
-    "  designators         if too long: left button scrolls down, right up, middle opens menu")
-  "The lines of the help panel on the mouse.")
+  '(("hover" "the strip at the bottom describes what is there")
+    ("click" "select a thing and describe it among the commands")
+    ("right button" "open a menu of actions")
+    ("drag the map" "move the view; the mouse wheel zooms")
+    ("drag a thing" "move the thing, while time stands still")
+    ("titles, splitters" "click to fold a display, drag to resize it")
+    ("designators" "if too long: left button scrolls down, right up, middle opens menu"))
+  "Lists (gesture effect): the rows of the help panel on the mouse.")
+
+(defparameter *key-help*
+  '(("arrows" "move the view") ("return" "go back to the input line")
+    ("escape" "close this panel, or go back to the input line")
+    ("F10" "open the menus: arrows move, return chooses"))
+  "Lists (key effect): the rows of the help panel on keys that are not keys of buttons.")
 
 (defun help-rows ()
-  (mapcar #'make-row
-          (append (list "Keys, after a click on a display")
-                  (loop for button in *bar-buttons*
-                        collect (format nil "  ~7A ~A" (key-label (button-key button))
-                                        (button-help button)))
-                  (list "  arrows  move the view" "  return  go back to the input line"
-                        "  escape  close this panel, or go back to the input line"
-                        "  F10     open the menus: arrows move, return chooses")
-                  *mouse-help*)))
+  (flet ((rows (lists)
+           (loop for (text more) in lists
+                 collect (make-row (format nil "  ~A" text) :more more))))
+    (append (list (make-row "Keys, after a click on a display"))
+            (rows (loop for button in *bar-buttons*
+                        collect (list (key-label (button-key button)) (button-help button))))
+            (rows *key-help*)
+            (list (make-row "") (make-row "Mouse"))
+            (rows *mouse-help*))))
 
 ;;; Layers.
 
@@ -176,16 +200,16 @@ the symbol of a command, the menu to show, or T."
           (if (member layer layers) (remove layer layers) (cons layer layers)))
     (repaint-if-changed (pane-named window 'world))))
 
-(defun layer-row-text (layer)
-  "Return the text for LAYER in the panel: its title, and its names at the prompt if they differ."
-  (let ((title (layer-title layer)) (words (layer-prompt-text layer)))
-    (format nil "~A~:[   ~(~A~)~;~]" title (string-equal title words) words)))
+(defun layer-names-text (layer)
+  "Return the names of LAYER at the prompt, or NIL if they are like its title."
+  (let ((names (layer-prompt-text layer)))
+    (unless (string-equal (layer-title layer) names) (string-downcase names))))
 
 (defun layer-rows (window)
   "Return the rows of the panel of layers. The layers for title and legend have no rows, because the
 window has a title and the mouse shows what things are."
   (flet ((layer-row (layer)
-           (make-row (layer-row-text layer)
+           (make-row (layer-title layer) :more (layer-names-text layer)
                      :tick (lambda () (member layer (window-layers window)))
                      :action (lambda () (toggle-layer window layer)) :stays-p t)))
     (append (mapcar #'layer-row (remove :legend (remove :title (picture-layers))))

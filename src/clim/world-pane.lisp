@@ -191,7 +191,7 @@
 (defun paint-terrain (pane medium width height)
   (let* ((scale (pane-scale pane)) (window (window-of pane)) (map (window-map window)))
     (flet ((cell (pixels) (floor pixels scale)))
-      (clim:draw-rectangle* medium 0 0 width height :ink clim:+gray92+)
+      (clim:draw-rectangle* medium 0 0 width height :ink (clim-ink +outside-color+))
       (call-in-view (lambda (canvas)
                       (with-gcontext (draw-gcontext* :foreground white*)
                         (draw-rectangle canvas draw-gcontext* 0 0 (* scale (map-width map))
