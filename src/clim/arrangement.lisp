@@ -42,7 +42,7 @@
 is true if this display has colours. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in pixels;
 NIL means a size that suits the window. FOLDED lists sections that show only their title.
 MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit the screen."
-  (layers *picture-layers* :type list)
+  (layers *window-layers* :type list)
   (color-p t)
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))

@@ -29,6 +29,8 @@ and return the label or whether the button is on."
 
 (defun view-follows-robot-p (window) (pane-following-p (pane-named window 'world)))
 
+(defun all-names-shown-p (window) (and (member :names (window-layers window)) t))
+
 (defparameter *bar-buttons*
   (list (make-button 'pause-label #\Space 'com-pause-or-resume
                      "Pause the run, or let time pass again"
@@ -39,6 +41,7 @@ and return the label or whether the button is on."
         (make-button "Back" #\B 'com-back "Go back ten ticks, and pause")
         (make-button "Fit" #\F 'com-fit "Show the whole map")
         (make-button "Follow" #\R 'com-follow "Keep the robot in view" 'view-follows-robot-p)
+        (make-button "Names" #\N 'com-names "Show or hide the names of all things" 'all-names-shown-p)
         (make-button "Layers" #\L 'com-layers "Choose what the world shows")
         (make-button "Help" #\? 'com-help "Show what the keys and the mouse do"))
   "The buttons of the tool bar, from left to right.")

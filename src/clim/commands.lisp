@@ -134,6 +134,9 @@ calls COMMAND. Return 8 if no button calls COMMAND."
   (open-popup window rows (button-left-edge window opener) (+ +menus-height+ +tool-bar-height+ 2)
               opener))
 
+(define-window-command (com-names "Names of all things") (window)
+  (toggle-layer window :names))
+
 (define-window-command (com-layers "Layers") (window)
   (open-popup-below-bar window (layer-rows window) 'com-layers))
 

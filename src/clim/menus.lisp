@@ -63,7 +63,8 @@
                             ("Whole map" com-fit) ("Go to the robot" com-find)
                             nil
                             ("Which robot ..." com-robots) ("Follow the robot" com-follow)
-                            ("Layers ..." com-layers) ("Colours on or off" com-color)
+                            ("Names of all things" com-names) ("Layers ..." com-layers)
+                            ("Colours on or off" com-color)
                             nil
                             ("All larger" com-larger) ("All smaller" com-smaller)))
         (make-menu "Robot" #'prompt-line-menus)

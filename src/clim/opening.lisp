@@ -242,6 +242,7 @@ has chosen another robot of the run, WINDOW shows that robot. Only the prompt's 
 ;;; Opening.
 
 (defun open-new-window (robot)
+  (check-layers 'open-display '*window-layers* *window-layers*)
   (let* ((port (window-port))
          (simulation (robot-simulation robot))
          (window nil)

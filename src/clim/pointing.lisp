@@ -14,7 +14,9 @@
     (setf (pointer-pointed (window-pointer (window-of pane))) (list pane x y text))
     (show-hint (window-of pane) text)))
 
-(defmethod handle-hover ((pane display-pane) x y) (show-description-at pane x y))
+(defmethod handle-hover ((pane display-pane) x y)
+  (show-description-at pane x y)
+  (repaint-if-changed pane))
 
 ;; If the strip shows something else meanwhile, that stays until the mouse moves.
 (defun update-description (pane)
@@ -185,6 +187,7 @@ popup. OPENER is the command or menu that had opened the popup.")
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-exit-event))
   (unless (pane-with-drag (window-of pane))
     (clear-description (window-of pane))
+    (repaint-if-changed pane)
     (repaint-if-changed (pane-named (window-of pane) 'strip))))
 
 ;;; A turn of the wheel is a button event, too, but not a press.

@@ -121,13 +121,15 @@ user code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per
 ;;; Three threads meet here. The thread that runs the ticks calls the observer, which makes a
 ;;; snapshot if one is wanted and otherwise notes that the last one is stale. The thread that paints
 ;;; is notified of each snapshot, and reports when it has PAINTED. The pacer, in between, requests
-;;; the next snapshot a while after that. So the window paints at most 30 times a second, however
-;;; fast the ticks pass, and never when nothing happens. Changes between ticks (a robot put
+;;; the next snapshot when it is due. So the window paints at most 30 times a second, however fast
+;;; the ticks pass, and never when nothing happens. Changes between ticks (a robot put
 ;;; somewhere, a thing moved at the prompt) call no observer, nor does a run that pauses; the pacer
 ;;; looks for such changes twice a second.
 
-(defconstant +seconds-after-picture+ 0.028
-  "The seconds from painting a picture to requesting the next snapshot.")
+(defconstant +seconds-between-pictures+ 1/30
+  "The seconds from requesting a snapshot to requesting the next one.")
+(defconstant +least-seconds-after-picture+ 0.003
+  "The least number of seconds from painting a picture to requesting the next snapshot.")
 (defconstant +seconds-between-checks+ 0.5
   "The interval, in seconds, at which to check for changes between ticks.")
 
@@ -236,15 +238,24 @@ itself, do nothing, because the next tick makes the snapshot."
   (make-snapshot-if-changed watcher)
   (check-run-over watcher))
 
+(defun time-of-next-picture (due now)
+  "Return when the picture after that of the time DUE is due, if that was painted at the time NOW."
+  (max (+ due +seconds-between-pictures+)
+       (+ now +least-seconds-after-picture+)))
+
+(defun request-snapshot (watcher)
+  (check-plans watcher)
+  (setf (watcher-wanted-p watcher) t)
+  (when (watcher-stale-p watcher) (make-snapshot-if-wanted watcher)))
+
 (defun run-pacer (watcher)
-  (loop with next = (seconds-now)
+  (loop with next = (seconds-now) and due = (seconds-now)
         until (watcher-over-p watcher)
         do (when (wait-on-semaphore (watcher-painted watcher)
                                     (max 0.001 (- next (seconds-now))))
-             (wait-on-semaphore (watcher-over watcher) +seconds-after-picture+)
-             (check-plans watcher)
-             (setf (watcher-wanted-p watcher) t)
-             (when (watcher-stale-p watcher) (make-snapshot-if-wanted watcher)))
+             (setf due (time-of-next-picture due (seconds-now)))
+             (wait-on-semaphore (watcher-over watcher) (- due (seconds-now)))
+             (request-snapshot watcher))
            (when (<= next (seconds-now))
              (setf next (+ (seconds-now) +seconds-between-checks+))
              (check-for-changes watcher))))

@@ -157,6 +157,8 @@
 (defclass world-pane (view display-pane)
   ((terrain :initform nil :accessor pane-terrain)
    (terrain-key :initform nil :accessor pane-terrain-key)
+   ;; Where names were in the last picture.
+   (live-view :initform (make-live-view) :reader pane-live-view)
    ;; Where what is dragged would be: (x y) of the pane, or NIL.
    (ghost :initform nil :accessor pane-ghost))
   (:documentation "The pane that shows the world."))
@@ -168,7 +170,23 @@
       (list (pane-left pane) (pane-top pane) (pane-scale pane)
             (multiple-value-list (pane-size pane)) (window-layers window)
             (window-color-p window) (window-selection window) (pane-ghost pane)
-            (snapshot-content snapshot)))))
+            (shown-robot-name window) (owner-at-mouse pane) (snapshot-content snapshot)))))
+
+(defun owner-at-mouse (pane)
+  "Return the thing, or the name of the robot, that the mouse points at in PANE, or NIL."
+  (destructuring-bind (&optional pointed x y text) (pointer-pointed (window-pointer (window-of pane)))
+    (declare (ignore text))
+    (let ((subject (and (eq pane pointed) (first (subjects-under pane x y)))))
+      (typecase subject
+        (thing-image (thing-image-thing subject))
+        (robot-image (robot-image-name subject))))))
+
+(defun update-live-view (pane)
+  "Record in the live view of PANE what is to stand out in the next picture. Return the live view."
+  (let ((view (pane-live-view pane)))
+    (setf (live-view-robot view) (shown-robot-name (window-of pane))
+          (live-view-pointed view) (owner-at-mouse pane))
+    view))
 
 ;;; Terrain.
 
@@ -234,7 +252,8 @@
           (setf (pane-subjects pane)
                 (canvas-subjects
                  (call-in-view (lambda (canvas)
-                                 (draw-movers canvas snapshot (window-layers window))
+                                 (draw-movers canvas snapshot (window-layers window)
+                                              (update-live-view pane))
                                  (draw-view-margins canvas (snapshot-map snapshot)
                                                     (window-layers window)
                                                     (pane-left pane) (pane-top pane)

@@ -183,6 +183,9 @@ show a window."
 ;;; event, perhaps for ever, and the picture would stand still until the mouse moves. So it checks
 ;;; once more when no other thread reads.
 
+;;; While another thread reads, CLX would check again and again without a pause, and keep a processor
+;;; busy while the X server paints.
+
 (defvar *input-arrived-p* (constantly nil)
   "A function that returns true if this thread's awaited input from the X server has arrived.")
 
@@ -197,5 +200,14 @@ true when the awaited input has arrived."
   "If the awaited input has arrived, return :COME. Otherwise call WAIT, a function of CLX."
   (if (funcall *input-arrived-p*) :come (funcall wait display timeout)))
 
+(defconstant +seconds-between-answer-checks+ 0.0005
+  "The interval, in seconds, at which a thread checks whether another one has read its answer.")
+
+(defun check-until-true (block why test &rest arguments)
+  "Return when the function TEST returns true for ARGUMENTS. BLOCK is CLX's function for this."
+  (declare (ignore block why))
+  (loop until (apply test arguments) do (sleep +seconds-between-answer-checks+)))
+
 (wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-x-server-input)
+(wrap-function (find-symbol "PROCESS-BLOCK" "XLIB") #'check-until-true)
 (wrap-function (find-symbol "BUFFER-INPUT-WAIT" "XLIB") #'wait-unless-input-arrived)

@@ -56,6 +56,10 @@ way. NIL means a solid line.")
   "Return the point (x y) at the distance RADIUS from X, Y in direction ANGLE."
   (list (+ x (* radius (cosine angle))) (+ y (* radius (sine angle)))))
 
+(defun pixel-distance (x y to-x to-y)
+  (let ((across (- to-x x)) (down (- to-y y)))
+    (sqrt (+ (* across across) (* down down)))))
+
 (defun draw-circle (canvas x y radius fill-p)
   "Draw a circle around X, Y. If FILL-P, fill the circle; else draw a line whose middle is RADIUS
 pixels from X, Y."

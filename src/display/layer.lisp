@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(text-layers picture-layers layer-title define-layer picture-layer-name
+(export '(check-layers text-layers picture-layers layer-title define-layer picture-layer-name
           text-layer-name layer-prompt-text))
 
 ;;; DEFINE-LAYER defines a layer for menus, the prompt, the documentation, legends, pictures and
@@ -31,9 +31,21 @@
 (addition *picture-layers*)
 (defvar *picture-layers* '())
 
+(addition *window-layers*)
+(defvar *window-layers*
+  '(:wedges :tracks :trail :planned-way :mover-names :places :coordinates :scale-bar)
+  "The layers that the first window shows: a list of names of layers. See *PICTURE-LAYERS* for the
+names. Later windows show the layers of the window that was closed last.")
+
 (defun picture-layers ()
   "Return the names of all layers, in the order of menus."
   (mapcar #'%layer-name *layers*))
+
+(defun check-layers (operator parameter layers)
+  "Signal WRONG-ARGUMENT unless LAYERS, the value of PARAMETER of OPERATOR, is a list of layers."
+  (unless (and (proper-list-p layers) (subsetp layers (picture-layers)))
+    (reject-argument operator parameter layers
+                     (format nil "a list of some of ~{~(~S~)~^, ~}" (picture-layers)))))
 
 (defun document-layers ()
   (setf (documentation '*picture-layers* 'variable)

@@ -41,19 +41,42 @@ lowest layer is first."
 (defconstant +robot-overhang+ 8
   "How far, in pixels, robots are drawn beyond the edges of the map: the least margin.")
 
-(defun draw-movers (canvas snapshot layers)
-  "Draw SNAPSHOT on CANVAS without its terrain: things, robots, and what LAYERS show of them."
-  (let* ((map (snapshot-map snapshot)) (around (* 2 +robot-overhang+))
-         (width (to-pixels (map-width map))) (height (to-pixels (map-height map))))
-    (with-clipping (canvas 0 0 width height)
-      (draw-shown-layers canvas (shown-layers-below-things snapshot layers)))
-    (with-clipping (canvas (- +robot-overhang+) (- +robot-overhang+)
-                           (+ width around) (+ height around))
-      (draw-robots canvas (snapshot-robots snapshot)))
-    (with-clipping (canvas 0 0 width height)
-      (draw-things canvas (snapshot-things snapshot))
-      (draw-shown-layers canvas (shown-layers-above-things snapshot layers))
-      (when (member :names layers) (draw-names canvas snapshot layers)))))
+(defun call-on-map (function canvas map &optional (overhang 0))
+  "Call FUNCTION. Clip what it draws on CANVAS to MAP and OVERHANG pixels around it."
+  (let ((around (* 2 overhang)))
+    (with-clipping (canvas (- overhang) (- overhang)
+                           (+ (to-pixels (map-width map)) around)
+                           (+ (to-pixels (map-height map)) around))
+      (funcall function))))
+
+(defun draw-all-movers (canvas snapshot layers shown-robot names-below names-above)
+  "Draw what DRAW-MOVERS draws. NAMES-BELOW and NAMES-ABOVE, functions, draw the names below and
+above robots and things."
+  (let ((map (snapshot-map snapshot)))
+    (call-on-map (lambda ()
+                   (draw-shown-layers canvas (shown-layers-below-things snapshot layers))
+                   (funcall names-below))
+                 canvas map)
+    (call-on-map (lambda () (draw-robots canvas (snapshot-robots snapshot) shown-robot))
+                 canvas map +robot-overhang+)
+    (call-on-map (lambda ()
+                   (draw-things canvas (snapshot-things snapshot))
+                   (draw-shown-layers canvas (shown-layers-above-things snapshot layers))
+                   (funcall names-above))
+                 canvas map)))
+
+(defun draw-movers (canvas snapshot layers &optional view)
+  "Draw SNAPSHOT on CANVAS without its terrain: things, robots, and what LAYERS show of them. VIEW
+is the live view of a window, in which names hold still, or NIL."
+  (if view
+      (multiple-value-bind (below above) (place-names view canvas snapshot layers)
+        (let ((*drawn-trail-metres* (longest-live-trail (snapshot-map snapshot))))
+          (flet ((draw (names) (dolist (name names) (draw-placed-name canvas name))))
+            (draw-all-movers canvas snapshot layers (live-view-robot view)
+                             (lambda () (draw below)) (lambda () (draw above))))))
+      (draw-all-movers canvas snapshot layers nil #'values
+                       (lambda ()
+                         (when (names-shown-p layers) (draw-names canvas snapshot layers))))))
 
 ;;;; The layers, in the order of menus
 
@@ -118,6 +141,10 @@ lowest layer is first."
 (define-layer :names "Names"
   "The names of things and robots, where there is room."
   :default-p t :depth :names)
+
+(define-layer :mover-names "Names of what moves"
+  "The names of robots and of things with kickers, where there is room."
+  :depth :names)
 
 (define-layer :coordinates "Coordinates" "Numbers of metres at the edges."
   :default-p t :depth :margin)

@@ -9,11 +9,13 @@
 (defconstant +most-squares+ 1000
   "A box that overlaps more squares than this is listed as a large box.")
 
-(defstruct (box-index (:constructor make-box-index ()) (:copier nil))
+(defstruct (box-index (:constructor make-box-index (&optional base)) (:copier nil))
   "An index of boxes. SQUARES is a table from the number of a square to the entries (box . item)
-whose box overlaps the square. LARGE lists the entries of large boxes."
+whose box overlaps the square. LARGE lists the entries of large boxes. The entries of the index BASE
+are found as well."
   (squares (make-hash-table) :type hash-table :read-only t)
-  (large '() :type list))
+  (large '() :type list)
+  (base nil :type (or null box-index) :read-only t))
 
 (defun some-overlapped-square (function box)
   "Call FUNCTION with the number of each square that BOX overlaps, until FUNCTION returns true.
@@ -38,8 +40,10 @@ Return the last value of FUNCTION."
                                   nil)
                                 box))))
 
-(defun index-boxes (boxes &optional (items boxes))
-  (let ((index (make-box-index)))
+(defun index-boxes (boxes &optional (items boxes) base)
+  "Return an index of BOXES with ITEMS, one for each box, in which the entries of the index BASE are
+found as well."
+  (let ((index (make-box-index base)))
     (mapc (lambda (box item) (add-box box item index)) boxes items)
     index))
 
@@ -49,7 +53,9 @@ Return the last value of FUNCTION."
                  when (and (overlap-p box other) (funcall test item)) return item)))
     (or (among (box-index-large index))
         (some-overlapped-square (lambda (square) (among (gethash square (box-index-squares index))))
-                                box))))
+                                box)
+        (and (box-index-base index)
+             (find-overlapping-item box (box-index-base index) test)))))
 
 (defun overlapping-items (box index)
   (let ((items '()))
@@ -58,13 +64,20 @@ Return the last value of FUNCTION."
 
 ;;; Names.
 
-(defstruct (label-target (:constructor make-label-target (name x y half &optional robot))
+;; Coordinates are floats, because arithmetic with ratios is slow.
+(defstruct (label-target (:constructor %make-label-target (name x y half robot thing))
                          (:copier nil))
   "A thing or robot on the map whose name, NAME, is to be written. It is drawn up to HALF pixels
-around X, Y. ROBOT is the image of a robot, or NIL for a thing."
+around X, Y. ROBOT is the image of a robot, or NIL for a thing. THING is the image of a thing or
+NIL."
   (name "" :type string :read-only t)
-  (x 0 :type real :read-only t) (y 0 :type real :read-only t) (half 0 :type real :read-only t)
-  (robot nil :read-only t))
+  (x 0d0 :type double-float :read-only t) (y 0d0 :type double-float :read-only t)
+  (half 0d0 :type double-float :read-only t)
+  (robot nil :read-only t) (thing nil :read-only t))
+
+(defun make-label-target (name x y half &optional robot thing)
+  (flet ((double (number) (coerce number 'double-float)))
+    (%make-label-target name (double x) (double y) (double half) robot thing)))
 
 (defun label-target-box (spot)
   (box-around (label-target-x spot) (label-target-y spot) (label-target-half spot)))
@@ -75,10 +88,10 @@ around X, Y. ROBOT is the image of a robot, or NIL for a thing."
 (defun candidate-name-boxes (x y half width)
   "Return boxes, best first, for a name WIDTH pixels wide beside a target, HALF pixels around X, Y."
   (let ((gap (+ half 2)) (high +name-height+))
-    (loop for (left top) in (list (list (+ x gap) (- y (/ high 2)))
-                                  (list (- x gap width) (- y (/ high 2)))
-                                  (list (- x (/ width 2)) (- y gap high))
-                                  (list (- x (/ width 2)) (+ y gap))
+    (loop for (left top) in (list (list (+ x gap) (- y (* 0.5d0 high)))
+                                  (list (- x gap width) (- y (* 0.5d0 high)))
+                                  (list (- x (* 0.5d0 width)) (- y gap high))
+                                  (list (- x (* 0.5d0 width)) (+ y gap))
                                   (list (+ x (/ gap 2)) (- y gap high))
                                   (list (+ x (/ gap 2)) (+ y gap))
                                   (list (- x (/ gap 2) width) (- y gap high))
@@ -112,8 +125,8 @@ overlaps. BOX must be within MAP."
   (destructuring-bind (left top right bottom) box
     (flet ((cell (pixels limit) (min (floor pixels graphics-scale*) (1- limit))))
       (let ((width (map-width map)) (height (map-height map)))
-        (loop for row from (cell top height) to (cell (- bottom 1/100) height)
-                thereis (loop for column from (cell left width) to (cell (- right 1/100) width)
+        (loop for row from (cell top height) to (cell (- bottom 0.01d0) height)
+                thereis (loop for column from (cell left width) to (cell (- right 0.01d0) width)
                                 thereis (funcall function (+ column (* row width)))))))))
 
 (defun on-wall-p (map box)
@@ -143,16 +156,26 @@ Return NIL if BOX is on a thin wall and ANYWHERE-P is false: then no name may be
               (if (and (member :trail layers) (on-trail-p snapshot box)) 1 0)))
           ((or anywhere-p (<= +least-wall-covering-scale+ graphics-scale*)) 4))))
 
-(defun best-box (snapshot layers boxes taken &key anywhere-p (own-p (constantly t)))
+(defconstant +cost-of-covered-name+ 5
+  "The cost of a box in which a name hides another name; see BOX-COST.")
+
+(defun cost-with-covered-names (cost box covered)
+  "Return COST, that of BOX or NIL. Add a cost if BOX overlaps a box of COVERED, an index or NIL."
+  (if (and cost covered (find-overlapping-item box covered))
+      (+ cost +cost-of-covered-name+)
+      cost))
+
+(defun best-box (snapshot layers boxes taken &key anywhere-p (own-p (constantly t)) covered)
   "Return the box in BOXES that hides least (see BOX-COST), or NIL if no box is possible. The box
-must be in the part of the map that SNAPSHOT shows, and must overlap no box of the index TAKEN.
-OWN-P must return true for the box."
+must be in the part of the map that SNAPSHOT shows, and must overlap no box of the index TAKEN. If
+possible, it overlaps no box of the index COVERED. OWN-P must return true for the box."
   (loop with best = nil and least = nil
         for box in boxes
         for cost = (and (box-within-shown-part-p snapshot box)
                         (not (find-overlapping-item box taken))
                         (funcall own-p box)
-                        (box-cost snapshot layers box anywhere-p))
+                        (cost-with-covered-names (box-cost snapshot layers box anywhere-p)
+                                                 box covered))
         when (and cost (or (null least) (< cost least)))
           do (setf best box least cost)
         ;; No box hides less. Films spend most of their time here.

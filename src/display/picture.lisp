@@ -19,9 +19,7 @@
   "Signal WRONG-ARGUMENT unless TITLE, LAYERS and SCALE are valid for OPERATOR, which draws a map."
   (unless (typep title '(or null string))
     (reject-argument operator :title title "a string or NIL"))
-  (unless (and (proper-list-p layers) (subsetp layers (picture-layers)))
-    (reject-argument operator "layers" layers
-                     (format nil "a list of some of ~{~(~S~)~^, ~}" (picture-layers))))
+  (check-layers operator "layers" layers)
   (unless (or (null scale) (argument-of-type-p scale 'picture-scale))
     (reject-argument operator "scale" scale (argument-type-text 'picture-scale))))
 

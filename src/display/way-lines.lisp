@@ -95,7 +95,7 @@ because ways would overlap there.")
 (defun pieces-in-lane (line)
   "Return the pieces of the way LINE that have several points, moved into the lane of LINE."
   (destructuring-bind (aside down) (nth-cyclic (way-line-lane line) +lanes+)
-    (let ((dx (* aside (way-line-width line))) (dy (* down (way-line-width line))))
+    (let ((dx (* 1d0 aside (way-line-width line))) (dy (* 1d0 down (way-line-width line))))
       (loop for piece in (way-line-pieces line)
             when (cddr piece)
               collect (loop for (x y) on piece by #'cddr collect (+ x dx) collect (+ y dy))))))
@@ -220,15 +220,46 @@ because ways would overlap there.")
 
 ;;; Trails.
 
+;;; In a window only the newest part of a trail is drawn, with few points, so that a long trail takes
+;;; no more time than a short one and does not hide the map.
+
+(defvar *drawn-trail-metres* nil
+  "The length in metres of the newest part of each trail that is drawn, or NIL for all of it.")
+
+(defconstant +trail-tolerance+ 0.5d0
+  "The distance from a straight part of a trail, in pixels, up to which points are left out.")
+
+(defun straight-on-p (x y dx dy last-x last-y next-x next-y)
+  "True if a trail from X, Y in direction DX, DY goes straight on from LAST-X, LAST-Y to NEXT-X,
+NEXT-Y."
+  (and (plusp (+ (* dx (- next-x last-x)) (* dy (- next-y last-y))))
+       (<= (abs (- (* dx (- next-y y)) (* dy (- next-x x))))
+           (* +trail-tolerance+ (sqrt (+ (* dx dx) (* dy dy)))))))
+
+(defun corners-of-piece (points)
+  "Return the first and last of POINTS, x y ... in pixels, and those where their line turns."
+  (destructuring-bind (x y &rest more) points
+    (loop with kept = (list y x) and last-x = x and last-y = y and dx = 0 and dy = 0
+          for (next-x next-y) on more by #'cddr
+          do (unless (straight-on-p x y dx dy last-x last-y next-x next-y)
+               (unless (and (eql x last-x) (eql y last-y))
+                 (setf kept (list* last-y last-x kept)))
+               (setf x last-x y last-y dx (- next-x x) dy (- next-y y)))
+             (setf last-x next-x last-y next-y)
+          finally (return (nreverse (if more (list* last-y last-x kept) kept))))))
+
 (defun pieces-of-trail (points)
   "Return the pieces, lists x y ... in pixels, of a trail with POINTS, the newest point first."
-  (let ((pieces '()) (before nil))
+  (let ((pieces '()) (before nil) (left *drawn-trail-metres*) (last-x 0d0) (last-y 0d0))
     (do-trail (points x y nil placements)
-      do (unless (eql placements before) (push '() pieces))
-         (setf before placements)
+      do (cond ((not (eql placements before)) (push '() pieces))
+               (left (decf left (pixel-distance last-x last-y x y))))
+         (setf before placements last-x x last-y y)
          (push (to-pixels x) (first pieces))
-         (push (to-pixels y) (first pieces)))
-    (nreverse (mapcar #'nreverse pieces))))
+         (push (to-pixels y) (first pieces))
+      until (and left (minusp left)))
+    (let ((pieces (nreverse (mapcar #'nreverse pieces))))
+      (if left (mapcar #'corners-of-piece pieces) pieces))))
 
 (defun robots-with-trails (snapshot)
   (remove-if-not (lambda (robot) (cddddr (robot-image-trail robot))) (snapshot-robots snapshot)))

@@ -117,10 +117,10 @@ WAYS are drawn above robots and things."
     (with-opacity (canvas +end-opacity+) (draw-arrows-on-ways canvas ways))
     (loop for (x y) in (start-points ways snapshot)
           do (draw-way-start canvas (to-pixels x) (to-pixels y) black*))
-    (draw-movers canvas snapshot (remove :names layers))
+    (draw-movers canvas snapshot (layers-without-names layers))
     (dolist (way ways)
       (with-opacity (canvas +end-opacity+) (draw-end canvas way)))
-    (when (member :names layers) (draw-names canvas snapshot layers))))
+    (when (names-shown-p layers) (draw-names canvas snapshot layers))))
 
 (defun ways-picture-svg (snapshot ways what &rest look &key layers in-color &allow-other-keys)
   "Return an SVG document that shows SNAPSHOT and WAYS in it. For WHAT see OUTCOME-LEGEND-ENTRIES,

@@ -126,11 +126,11 @@ robot in the list of robots of its world."
 (defun draw-run (canvas snapshot ways spots layers)
   (draw-terrain canvas (snapshot-map snapshot) :layers layers)
   (draw-robot-ways canvas ways)
-  (draw-movers canvas snapshot (remove :names layers))
+  (draw-movers canvas snapshot (layers-without-names layers))
   (let* ((along (loop for (nil . pieces) in ways
                       append (mapcan #'boxes-along (pieces-in-pixels pieces))))
          (boxes (draw-spots canvas snapshot spots along)))
-    (when (member :names layers) (draw-names canvas snapshot layers (append boxes along)))))
+    (when (names-shown-p layers) (draw-names canvas snapshot layers (append boxes along)))))
 
 (defun draw-notes (canvas notes left y width)
   "Write NOTES below each other from Y on, at most WIDTH pixels wide. Each note is a list: a number
