@@ -34,6 +34,14 @@
       (loop for length in (if (listp dashes) dashes (list dashes dashes))
             collect (* (canvas-magnification canvas) length)))))
 
+(defun clim-drawing-options (canvas gcontext fill-p)
+  "Return CLIM's options for drawing a shape, filled if FILL-P, as GCONTEXT says. Filled shapes need
+no line style; setting one takes time."
+  (list* :filled (and fill-p t) :ink (clim-ink (gcontext-foreground gcontext))
+         (unless fill-p
+           (list :line-thickness (clim-line-thickness canvas gcontext)
+                 :line-dashes (clim-line-dashes canvas gcontext)))))
+
 (defun extend-bounding-box (canvas left top right bottom)
   (let ((reach (canvas-reach canvas)))
     (when reach
@@ -56,11 +64,8 @@
 (defmethod paint-rectangles ((canvas clim-canvas) gcontext rectangles fill-p)
   (let ((corners (corners-of-rectangles rectangles)))
     (extend-bounding-box-over-points canvas corners)
-    (clim:draw-rectangles* (canvas-medium canvas) corners
-                           :filled (and fill-p t)
-                           :ink (clim-ink (gcontext-foreground gcontext))
-                           :line-thickness (clim-line-thickness canvas gcontext)
-                           :line-dashes (clim-line-dashes canvas gcontext))))
+    (apply #'clim:draw-rectangles* (canvas-medium canvas) corners
+           (clim-drawing-options canvas gcontext fill-p))))
 
 (defun arc-points (x y width height start extent)
   "Return points x y ... along an arc, so close together that the arc looks round."
@@ -72,10 +77,8 @@
           collect (- (+ y down) (* down (sine angle))))))
 
 (defun paint-ellipse (canvas gcontext x y width height fill-p)
-  (clim:draw-ellipse* (canvas-medium canvas) (+ x (/ width 2)) (+ y (/ height 2))
-                      (/ width 2) 0 0 (/ height 2)
-                      :filled (and fill-p t) :ink (clim-ink (gcontext-foreground gcontext))
-                      :line-thickness (clim-line-thickness canvas gcontext)))
+  (apply #'clim:draw-ellipse* (canvas-medium canvas) (+ x (/ width 2)) (+ y (/ height 2))
+         (/ width 2) 0 0 (/ height 2) (clim-drawing-options canvas gcontext fill-p)))
 
 (defun box-for-outline (x y width height thickness)
   "Return the box, as values x, y, width and height, along which an outline of THICKNESS must be
@@ -103,11 +106,8 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
 (defmethod paint-path ((canvas clim-canvas) gcontext points fill-p)
   (let ((points (coerce points 'list)))
     (extend-bounding-box-over-points canvas points)
-    (clim:draw-polygon* (canvas-medium canvas) points
-                        :filled (and fill-p t) :closed (and fill-p t)
-                        :ink (clim-ink (gcontext-foreground gcontext))
-                        :line-thickness (clim-line-thickness canvas gcontext)
-                        :line-dashes (clim-line-dashes canvas gcontext))))
+    (apply #'clim:draw-polygon* (canvas-medium canvas) points :closed (and fill-p t)
+           (clim-drawing-options canvas gcontext fill-p))))
 
 (defmethod paint-segments ((canvas clim-canvas) gcontext segments)
   (let ((points (coerce segments 'list)))

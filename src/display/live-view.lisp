@@ -81,10 +81,18 @@ a rewind, or in another map, nothing has moved."
     (and tick (< (- (snapshot-tick (live-view-snapshot view)) tick) +ticks-to-rest+))))
 
 (defun moving-image-p (view image)
-  "True if the thing of IMAGE moves: it has moved lately, or it has moved and has kickers."
+  "True if the thing of IMAGE moves: it has moved lately, or it has kickers and has ever moved. So a
+sheet of paper that is blown about now and then moves no names."
   (let ((thing (thing-image-thing image)))
     (and (gethash thing (live-view-moves view))
          (or (thing-image-moving-p image) (moved-lately-p view thing)))))
+
+(defun images-by-motion (view snapshot)
+  "Return two values, lists of images: the things of SNAPSHOT at rest, and those that move."
+  (loop for image across (snapshot-things snapshot)
+        if (moving-image-p view image) collect image into moving
+        else collect image into resting
+        finally (return (values resting moving))))
 
 ;;; Marks at rest.
 
@@ -174,13 +182,11 @@ function TEST returns false for its box. The room is taken then."
         graphics-scale* in-color*
         (remove-if-not (lambda (layer) (member layer layers)) '(:names :mover-names :places))))
 
-(defun update-names-at-rest (view snapshot layers marks per-character)
-  "Place the names of the things at rest in SNAPSHOT, unless all that they depend on is unchanged.
-MARKS are the boxes of all marks in the picture."
+(defun update-names-at-rest (view snapshot layers images marks per-character)
+  "Place the names of IMAGES, the things of SNAPSHOT at rest, unless all that they depend on is
+unchanged. MARKS are the boxes of all marks in the picture."
   (let* ((basis (names-basis snapshot layers)) (tick (snapshot-tick snapshot))
-         (new-p (not (equal basis (first (live-view-basis view)))))
-         (images (remove-if (lambda (image) (moving-image-p view image))
-                            (coerce (snapshot-things snapshot) 'list))))
+         (new-p (not (equal basis (first (live-view-basis view))))))
     (when new-p (clrhash (live-view-places view)))
     (record-marks view marks tick new-p)
     (let ((all (list basis images (marks-at-rest view tick))))
@@ -189,12 +195,6 @@ MARKS are the boxes of all marks in the picture."
         (place-names-at-rest view snapshot layers images (third all) per-character)))))
 
 ;;; Names of robots and moving things.
-
-(defun moving-targets (view snapshot)
-  "Return the label targets of the robots of SNAPSHOT and of its moving things."
-  (append (robot-label-targets (snapshot-robots snapshot) (live-view-robot view))
-          (label-targets-by-size (remove-if-not (lambda (image) (moving-image-p view image))
-                                                (coerce (snapshot-things snapshot) 'list)))))
 
 (defun placement-above-names (view snapshot layers targets marks)
   "Return the placement for the names of TARGETS, which move."
@@ -210,7 +210,8 @@ MARKS are the boxes of all marks in the picture."
 
 (defun place-moving-name (view placement target per-character)
   "Return the name of TARGET, which moves, in PLACEMENT: in its old place if this is free and, when
-TARGET has come to rest, clear. Return NIL if there is no room."
+TARGET has stopped, clear. Return NIL if there is no room. Only names of robots and of what has
+moved lately cover other names."
   (let ((moving-p (moved-lately-p view (label-target-owner target)))
         (width (name-width target per-character)))
     (flet ((on-name-p (box) (find-overlapping-item box (placement-covered placement))))
@@ -248,9 +249,11 @@ name covers others."
                                           (name-width target per-character)))
                                   nil))))))
 
-(defun place-names-above (view snapshot layers marks per-character)
-  "Return the names of robots and moving things in SNAPSHOT, and of what the mouse points at."
-  (let* ((targets (moving-targets view snapshot))
+(defun place-names-above (view snapshot layers images marks per-character)
+  "Return the names of robots and of IMAGES, moving things, in SNAPSHOT, and of what the mouse points
+at."
+  (let* ((targets (append (robot-label-targets (snapshot-robots snapshot) (live-view-robot view))
+                          (label-targets-by-size images)))
          (placement (placement-above-names view snapshot layers targets marks))
          (names (loop for target in (named-targets targets layers)
                       for name = (place-moving-name view placement target per-character)
@@ -265,8 +268,9 @@ of things at rest, and the names above them."
   (record-moves view snapshot)
   (let ((per-character (character-width canvas +name-size+))
         (marks (layer-mark-boxes snapshot layers)))
-    (update-names-at-rest view snapshot layers
-                          (layer-mark-boxes snapshot (remove :planned-way layers))
-                          per-character)
-    (values (live-view-names view)
-            (place-names-above view snapshot layers marks per-character))))
+    (multiple-value-bind (resting moving) (images-by-motion view snapshot)
+      (update-names-at-rest view snapshot layers resting
+                            (layer-mark-boxes snapshot (remove :planned-way layers))
+                            per-character)
+      (values (live-view-names view)
+              (place-names-above view snapshot layers moving marks per-character)))))
