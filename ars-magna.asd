@@ -212,6 +212,7 @@
      (:module "prompt" :serial t
       :components ((:file "loading") (:file "quantities") (:file "reporting") (:file "worlds")
                    (:file "listener") (:file "session") (:file "open-trial") (:file "clx")
+                   (:file "compiling")
                    (:file "listening") (:file "jobs") (:file "line") (:file "finding")
                    (:file "arguments") (:file "plans") (:file "break-requests")
                    (:file "reading") (:file "carrying-out") (:file "debugger")

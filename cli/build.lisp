@@ -10,7 +10,7 @@
 (defpackage :ars-magna.build
   (:documentation "Compiles the project, saves the prompt's core and runs the tests.")
   (:use :cl)
-  (:export #:configure #:print-missing-libraries #:print-window-libraries #:get-window-libraries
+  (:export #:configure #:show-progress #:print-missing-libraries #:print-window-libraries #:get-window-libraries
            #:load-project #:load-strictly
            #:print-library-versions #:load-tests #:save-prompt #:save-window-prompt #:run-tests
            #:record-sessions #:write-manual))
@@ -63,6 +63,7 @@
 (from CL_SOURCE_REGISTRY or files in ~/.config/common-lisp): ")
 
 (load (uiop:subpathname *project-directory* "cli/prompt/clx.lisp"))
+(load (uiop:subpathname *project-directory* "cli/prompt/compiling.lisp"))
 
 ;;; Libraries.
 
@@ -165,6 +166,18 @@ and of ASDF's configuration directories. The options have ASDF's format."
 
 ;;; Compiling.
 
+(defvar *progress-stream* nil "The stream on which to show which file is compiled, or NIL.")
+
+(defun show-progress ()
+  "From now on, show on the error output which file is compiled. Write errors to standard output."
+  (setf *progress-stream* (shiftf *error-output* *standard-output*)))
+
+(defun call-showing-progress (function system)
+  "Call FUNCTION, which loads SYSTEM. Show which file is compiled, if SHOW-PROGRESS was called."
+  (if *progress-stream*
+      (uiop:symbol-call :ars-magna.compiling :call-showing-files function system *progress-stream*)
+      (funcall function)))
+
 (defun delete-fasls (fasls)
   (when *cache-directory*
     (uiop:delete-directory-tree fasls :validate t :if-does-not-exist :ignore)))
@@ -233,22 +246,28 @@ and try again. If the second try fails, too, exit with status 2."
 
 (defun load-project (system)
   "Compile and load SYSTEM, a system of the project. Exit if loading fails."
-  (load-libraries (libraries system))
-  (when (nth-value 1 (call-counting-warnings (lambda () (asdf:load-system system))))
-    (quit-after-failure))
+  (call-showing-progress
+   (lambda ()
+     (load-libraries (libraries system))
+     (when (nth-value 1 (call-counting-warnings (lambda () (asdf:load-system system))))
+       (quit-after-failure)))
+   system)
   (save-library-list))
 
 (defun load-strictly (system)
   "Compile and load SYSTEM like LOAD-PROJECT, but exit also after a warning in the project's files."
   (when (and *cache-directory* (probe-file (warnings-marker-path)))
     (delete-fasls (project-fasl-directory)))
-  (load-libraries (libraries system))
-  (let ((uiop:*compile-file-warnings-behaviour* :error)
-        (uiop:*compile-file-failure-behaviour* :error))
-    (multiple-value-bind (warnings failed-p)
-        (call-counting-warnings (lambda () (asdf:load-system system)))
-      (when (or failed-p (plusp warnings))
-        (quit-after-failure))))
+  (call-showing-progress
+   (lambda ()
+     (load-libraries (libraries system))
+     (let ((uiop:*compile-file-warnings-behaviour* :error)
+           (uiop:*compile-file-failure-behaviour* :error))
+       (multiple-value-bind (warnings failed-p)
+           (call-counting-warnings (lambda () (asdf:load-system system)))
+         (when (or failed-p (plusp warnings))
+           (quit-after-failure)))))
+   system)
   (save-library-list))
 
 (defun load-tests ()
@@ -270,7 +289,9 @@ and try again. If the second try fails, too, exit with status 2."
 
 (defun get-window-libraries ()
   "Load McCLIM through Quicklisp. If loading fails, print the reason and exit with status 1."
-  (handler-case (uiop:symbol-call :ars-magna.clx :load-by-quicklisp)
+  (handler-case (call-showing-progress
+                 (lambda () (uiop:symbol-call :ars-magna.clx :load-by-quicklisp))
+                 "mcclim/looks")
     (error (condition)
       (format t "~&*** ~A~%" (text-on-one-line condition))
       (uiop:quit 1))))

@@ -28,6 +28,7 @@ heeding() {  # COMMAND...: run it, and end it if this shell is ended meanwhile.
 end_by() {  # SIGNAL: end the child and this shell, as by default for the signal.
     trap '' HUP INT TERM
     [ -z "$watching" ] || { kill -s KILL "$!" && wait "$!"; } 2>/dev/null
+    [ -z "$watching" ] || [ ! -t 2 ] || printf '\r%75s\r' '' >&2  # A line of Lisp's on progress.
     [ "$1" != INT ] || say stopped.
     trap - "$1"
     kill -s "$1" $$
@@ -237,11 +238,13 @@ roomy() {  # Is there room for another 10 MB?
 # Only the child's output is redirected: this shell's messages go to the screen.
 into() {  # FILE COMMAND...
     file=$1; shift
-    exec "$@" >"$file" 2>&1
+    exec "$@" >"$file"
 }
 
+# Lisp shows on the error output which file it compiles, and writes errors to the log.
 evaluate_building() {  # LOG LISP-FORM
-    heeding into "$1" sbcl $plainly --load "$root/cli/build.lisp" --eval "$2"
+    heeding into "$1" sbcl $plainly --load "$root/cli/build.lisp" \
+        --eval '(ars-magna.build:show-progress)' --eval "$2"
 }
 
 compile() {  # NAME LISP-FORM: evaluate the form of build.lisp; show its troubles if that fails.

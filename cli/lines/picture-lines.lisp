@@ -87,14 +87,26 @@ output. After an error, signal BAD-LINE with TROUBLE, a format control for the e
     (error (condition)
       (reject-line trouble (one-line (condition-text condition))))))
 
+(defun call-showing-compiled-files (function system)
+  "Call FUNCTION, which loads SYSTEM. At a terminal, show which file is compiled."
+  (let ((progress (and *session*
+                       (session-terminal-p *session*)
+                       (make-progress-line (session-console *session*)))))
+    (unwind-protect
+         (ars-magna.compiling:call-counting-files
+          function system (lambda (text) (note-progress progress "~@(~A~)" text)))
+      (when progress (end-progress progress)))))
+
 (defun load-window-system (quicklisp-p)
   "Load the system ars-magna/clim. If QUICKLISP-P, load McCLIM through Quicklisp first."
-  (when quicklisp-p
-    (load-or-reject #'ars-magna.clx:load-by-quicklisp
-                     "No window: Quicklisp could not get McCLIM (~A). Check the network, ~
-                      then type WINDOW again."))
-  (load-or-reject (lambda () (asdf:load-system "ars-magna/clim"))
-               "No window: McCLIM was found, but cannot be loaded: ~A"))
+  (flet ((load-showing-files (function system trouble)
+           (load-or-reject (lambda () (call-showing-compiled-files function system)) trouble)))
+    (when quicklisp-p
+      (load-showing-files #'ars-magna.clx:load-by-quicklisp "mcclim/looks"
+                          "No window: Quicklisp could not get McCLIM (~A). Check the network, ~
+                           then type WINDOW again."))
+    (load-showing-files (lambda () (asdf:load-system "ars-magna/clim")) "ars-magna/clim"
+                        "No window: McCLIM was found, but cannot be loaded: ~A")))
 
 ;; Read when this file is loaded, so that a saved program has it with it.
 (defparameter *mcclim-installation-text*

@@ -51,6 +51,10 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
     (handler-case (load-lisp (find-lisp-file name))
       (ars-magna-error (condition) (reject-usage "~A" (condition-text condition))))))
 
+(defun reject-unknown-names (condition)
+  "Signal USAGE-ERROR for CONDITION, a BAD-LINE about a name of a world or robot in the options."
+  (reject-usage "~A --list lists the worlds and their robots." (bad-line-text condition)))
+
 (defun find-robot-name-from-options (session options)
   "Return the name of the robot that OPTIONS ask for. If that robot is not defined, load the files
 of --load now, because they may define it. Signals USAGE-ERROR if the robot is still not defined."
@@ -59,8 +63,7 @@ of --load now, because they may define it. Signals USAGE-ERROR if the robot is s
       (let ((files (shiftf (reader-files (session-reader session)) '())))
         (cond (files (load-files-before-prompt files)
                      (find-robot-name-from-options session options))
-              (t (reject-usage "~A --list lists the worlds and their robots."
-                               (bad-line-text condition))))))))
+              (t (reject-unknown-names condition)))))))
 
 (defun run-headless (session robot-name seed)
   "Run the lines of SESSION, a batch, in a fresh world. If a line WORLD has chosen another robot to
@@ -141,13 +144,17 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
           *debug-io* both
           *terminal-io* both)))
 
+(defun check-live-for-window (options)
+  "Signal USAGE-ERROR if OPTIONS ask for a window of a run that is not live."
+  (when (and (or (option-value :batch options) (option-value :script options)
+                 (option-value :json options))
+             (null (option-value :rate options)))
+    (reject-usage "--window shows a live run. A batch or script is live only with --rate.")))
+
 (defun check-window-option (options)
   "Signal USAGE-ERROR if OPTIONS ask for a window where none can be shown."
   (when (option-value :window options)
-    (when (and (or (option-value :batch options) (option-value :script options)
-                   (option-value :json options))
-               (null (option-value :rate options)))
-      (reject-usage "--window shows a live run. A batch or script is live only with --rate."))
+    (check-live-for-window options)
     (handler-case (ensure-window-system)
       (bad-line (condition) (reject-usage "~A" (bad-line-text condition))))))
 
@@ -191,11 +198,21 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
        (script-p (first (last arguments)))
        (ignore-errors (parse-options (butlast arguments)) t)))
 
+(defun script-and-others (arguments)
+  "Return two values: the script that ARGUMENTS name, or NIL, and the other arguments."
+  (cond ((script-p (first arguments)) (values (first arguments) (rest arguments)))
+        ((script-last-p arguments) (values (first (last arguments)) (butlast arguments)))
+        (t (values nil arguments))))
+
+(defun options-with-script (script arguments)
+  "Return the options in ARGUMENTS, and an option for SCRIPT unless it is NIL."
+  (let ((text (and script (script-path script) (foreign-file-text (script-path script)))))
+    (when text (reject-usage "~A" text)))
+  (append (and script (list (list :script script))) (parse-options arguments)))
+
 (defun run-script (script arguments)
   "Run SCRIPT with the options in ARGUMENTS. Return the status to exit with."
-  (let ((text (and (script-path script) (foreign-file-text (script-path script)))))
-    (when text (reject-usage "~A" text)))
-  (let ((options (list* (list :script script) (parse-options arguments))))
+  (let ((options (options-with-script script arguments)))
     (prog1 (run-with-options options)
       (when (and (script-path script)
                  (null (option-value :world options))
@@ -212,12 +229,33 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
         ((equal arguments '("--version"))
          (format t "ARS MAGNA ~A~%" *version*)
          0)
-        ((script-p (first arguments)) (run-script (first arguments) (rest arguments)))
-        ((script-last-p arguments)
-         (run-script (first (last arguments)) (butlast arguments)))
-        ((and arguments (not (option-p (first arguments))))
-         (run-shell-command (first arguments) (rest arguments)))
-        (t (run-with-options (parse-options arguments)))))
+        (t (multiple-value-bind (script others) (script-and-others arguments)
+             (cond (script (run-script script others))
+                   ((and others (not (option-p (first others))))
+                    (run-shell-command (first others) (rest others)))
+                   (t (run-with-options (parse-options others))))))))
+
+;;; The shell script has the arguments checked before it compiles McCLIM, which takes minutes.
+
+(defun check-names-in-options (options)
+  "Signal USAGE-ERROR if OPTIONS name an unknown world or robot. If files of OPTIONS may define the
+names, check nothing, because loading a file can have any effect."
+  (let ((world (option-value :world options)))
+    (unless (or (option-value :load options) (and world (existing-lisp-file world)))
+      (handler-case (robot-name-from-options options)
+        (bad-line (condition) (reject-unknown-names condition))))))
+
+(defun check-arguments (arguments)
+  "Signal USAGE-ERROR if ARGUMENTS, which ask for a window, are wrong, as far as is known without
+McCLIM. Otherwise return 0, the status to exit with."
+  (multiple-value-bind (script others) (script-and-others arguments)
+    (if (and others (null script) (not (option-p (first others))))
+        (find-shell-command (first others))
+        (let ((options (options-with-script script others)))
+          (unless (option-value :list options)
+            (check-live-for-window options)
+            (check-names-in-options options)))))
+  0)
 
 ;;; The process.
 
@@ -260,6 +298,13 @@ print a message and return the status for that case."
       (call-with-page-width function (1- (window-size)))
       (funcall function)))
 
+(defun do-as-arguments-say ()
+  "Run this program with its arguments, or only check those after --probe. Return the exit status."
+  (let ((arguments (process-arguments)))
+    (if (equal "--probe" (first arguments))
+        (check-arguments (rest arguments))
+        (run-with-arguments arguments))))
+
 (defun run-process ()
   (let ((console (make-standard-console)))
     (setf *standard-output* console
@@ -267,12 +312,11 @@ print a message and return the status for that case."
     (finish-console console
                     (call-for-status
                      (lambda ()
-                       (call-fitting-tables (lambda () (run-with-arguments (process-arguments)))
-                                            console))))))
+                       (call-fitting-tables #'do-as-arguments-say console))))))
 
 (defun main ()
   "Run ./cli/ars-magna: do what the arguments of this process say, then end the process. The
-argument --probe only tests whether the core starts."
+argument --probe alone only tests whether the core starts; before others, it only checks these."
   (when (equal (process-arguments) '("--probe")) (end-process 0))
   ;; The core may have been saved where the environment names another.
   (uiop:setup-temporary-directory)

@@ -28,11 +28,14 @@
 
 (defconstant +ticks-of-step-back+ 10 "The number of ticks that the button Back goes back.")
 
-;; This goes back some ticks, as REWIND does, or to the first tick there is. It pauses the run, as
-;; STEP does, since ticks that pass would undo it at once.
+;; Ticks that pass would undo a rewind at once.
+(defun pause-before-rewind (window)
+  (when (live-p (window-simulation window)) (pause (window-simulation window))))
+
+;; This goes back some ticks, as REWIND does, or to the first tick there is.
 (define-window-command (com-back "Go back") (window)
   (let ((simulation (window-simulation window)))
-    (when (live-p simulation) (pause simulation))
+    (pause-before-rewind window)
     (let ((passed (- (simulation-tick simulation) (or (earliest-tick simulation) 0))))
       (run-line-at-prompt (window-conversation window)
                           (format nil "rewind ~D" (min +ticks-of-step-back+ passed))))))

@@ -3,7 +3,8 @@
 (in-package :ars-magna.clim)
 
 ;;; An offer is (title line): its title in the menu, and the line that goes to the window's prompt
-;;; when it is chosen, as if typed; so the transcript shows it.
+;;; when it is chosen, as if typed; so the transcript shows it. A third element, if any, is a
+;;; function to call with the window before.
 
 (defgeneric offers (subject window)
   (:documentation "Return the context menu for SUBJECT, an object that WINDOW shows: a list of
@@ -209,10 +210,11 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
 
 ;;; As a menu.
 
-(defun offer-row (window title line)
+(defun offer-row (window title line &optional before)
   (make-row title
             :more line
             :action (lambda ()
+                      (when before (funcall before window))
                       (run-line-at-prompt (window-conversation window) line)
                       ;; If you continue typing, you mean the next line.
                       (focus-and-repaint (pane-named window 'interactor)))))

@@ -199,7 +199,8 @@
 (defun rewind-line-text (tick) (format nil "rewind-to ~D" tick))
 
 (defmethod offers ((moment timeline-point) window)
-  (cons (list "Rewind to this tick" (rewind-line-text (timeline-point-tick moment)))
+  (cons (list "Pause, and rewind to this tick" (rewind-line-text (timeline-point-tick moment))
+              #'pause-before-rewind)
         (and (typep (timeline-point-bar moment) 'bar)
              (offers (timeline-point-bar moment) window))))
 
@@ -227,9 +228,11 @@ point of the timeline. Return NIL if PANE shows no subject there."
 (defmethod hover-text ((pane plan-pane) x y) (subject-description (plan-subject-at pane x y)))
 
 (defun rewind-run-to-tick (pane tick)
-  (if (< tick (snapshot-tick (window-snapshot (window-of pane))))
-      (run-line-at-prompt (window-conversation (window-of pane)) (rewind-line-text tick))
-      (show-hint (window-of pane) "The run is at this tick now.")))
+  (let ((window (window-of pane)))
+    (cond ((< tick (snapshot-tick (window-snapshot window)))
+           (pause-before-rewind window)
+           (run-line-at-prompt (window-conversation window) (rewind-line-text tick)))
+          (t (show-hint window "The run is at this tick now.")))))
 
 (defmethod handle-click ((pane plan-pane) button x y)
   (let ((subject (plan-subject-at pane x y)))

@@ -152,11 +152,13 @@ popup. OPENER is the command or menu that had opened the popup.")
                        (event-position pane event)))
 
 (defmethod clim:handle-event ((pane display-pane) (event clim:pointer-button-release-event))
-  (let ((dragged (pane-drag pane)))
+  (let* ((dragged (pane-drag pane)) (window (window-of pane)) (before (window-hint window)))
     (unless (member dragged '(nil :scroll-bar))
       (multiple-value-call #'handle-drop pane (event-position pane event)))
     (setf (pane-drag pane) nil)
-    (show-description-at-mouse (window-of pane))))
+    ;; What was said about the drop stays until the mouse moves.
+    (when (or (eq before (window-hint window)) (string= "" (window-hint window)))
+      (show-description-at-mouse window))))
 
 ;; During dragging, the strip describes that, wherever the mouse is.
 (defun pane-with-drag (window)
@@ -227,4 +229,8 @@ popup. OPENER is the command or menu that had opened the popup.")
       (show-hint (window-of pane) (why-not-draggable-text thing (window-of pane))))))
 
 (defmethod handle-drop ((pane detail-pane) x y)
-  (unless (fourth (pane-drag pane)) (handle-click pane :left x y)))
+  (destructuring-bind (thing from-x from-y moved-p) (pane-drag pane)
+    (declare (ignore from-x from-y))
+    (if moved-p
+        (show-hint (window-of pane) (why-not-draggable-text thing (window-of pane)))
+        (handle-click pane :left x y))))

@@ -53,15 +53,32 @@ change."
   (incf (transcript-count transcript))
   (incf (transcript-newest transcript)))
 
+(defconstant +tab-width+ 8 "The number of columns from one tab stop to the next.")
+
+(defun expand-tabs (text column)
+  "Return TEXT, which begins at COLUMN of a line, with spaces in place of tabs."
+  (with-output-to-string (out)
+    (loop for (part . more) on (uiop:split-string text :separator '(#\Tab))
+          do (write-string part out)
+             (incf column (length (ars-magna.cli:unpainted-text part)))
+             (when more
+               (let ((width (- +tab-width+ (mod column +tab-width+))))
+                 (incf column width)
+                 (format out "~VA" width ""))))))
+
 (defun add-to-last-line (transcript part)
   "Add PART to the last line of TRANSCRIPT. A return character in PART erases the text before it."
   (let ((return (position #\Return part :from-end t)))
     (when return (setf (first (transcript-lines transcript)) ""))
     (when (< +longest-line+ (length (first (transcript-lines transcript))))
       (begin-transcript-line transcript))
-    (setf (first (transcript-lines transcript))
-          (uiop:strcat (first (transcript-lines transcript))
-                       (subseq part (if return (1+ return) 0))))))
+    (let ((line (first (transcript-lines transcript)))
+          (text (subseq part (if return (1+ return) 0))))
+      (setf (first (transcript-lines transcript))
+            (uiop:strcat line
+                         (if (find #\Tab text)
+                             (expand-tabs text (length (ars-magna.cli:unpainted-text line)))
+                             text))))))
 
 (defun add-text (transcript text)
   (loop for (part . more) on (uiop:split-string text :separator '(#\Newline))

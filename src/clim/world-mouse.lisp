@@ -4,7 +4,8 @@
 
 ;;; The wheel zooms. The left button selects by a click and moves the view by dragging. While time
 ;;; stands still, it drags things and robots to another place: a ghost shows where, and the prompt
-;;; then gets the line that a user would type. (PANE-DRAG PANE) is (subject from-x from-y moved-p).
+;;; then gets the line that a user would type. While time passes, the status strip says what to do
+;;; first. (PANE-DRAG PANE) is (subject from-x from-y moved-p).
 
 (defmethod handle-wheel ((pane world-pane) steps x y)
   (zoom-view pane (expt 2 (- (signum steps))) x y))
@@ -75,11 +76,20 @@ Y, return the selected one, else a robot with its middle there, else the smalles
 (defmethod handle-drag ((pane world-pane) x y)
   (destructuring-bind (subject from-x from-y moved-p) (pane-drag pane)
     (when (or moved-p (moved-far-p x y from-x from-y))
-      (cond ((draggable-now-p pane subject)
-             (setf (pane-drag pane) (list subject from-x from-y t))
-             (show-drop-place pane subject x y))
+      (setf (pane-drag pane) (list subject from-x from-y t))
+      (cond ((draggable-now-p pane subject) (show-drop-place pane subject x y))
+            (subject (refuse-drag pane subject))
             (t (setf (pane-drag pane) (list nil x y t))
                (move-view pane (- from-x x) (- from-y y)))))))
+
+(defun refuse-drag (pane subject)
+  "Say in the status strip why SUBJECT cannot be dragged now in PANE. The view does not move,
+because everything in it, SUBJECT too, would move with the mouse."
+  (setf (pane-ghost pane) nil)
+  (show-hint (window-of pane)
+             (format nil "To move ~A, pause the run first (space). To move the view, drag an empty ~
+                          place." (subject-title subject)))
+  (repaint-if-changed pane))
 
 (defun show-drop-place (pane subject x y)
   "Mark in PANE the place X, Y where SUBJECT would be dropped, and describe the place in the strip."
@@ -126,4 +136,5 @@ Y, return the selected one, else a robot with its middle there, else the smalles
   (destructuring-bind (subject from-x from-y moved-p) (pane-drag pane)
     (declare (ignore from-x from-y))
     (cond ((not moved-p) (handle-click pane :left x y))
-          (subject (drop-subject pane subject x y)))))
+          ((draggable-now-p pane subject) (drop-subject pane subject x y))
+          (subject (refuse-drag pane subject)))))
