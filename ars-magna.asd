@@ -238,7 +238,8 @@
                  (:file "transcript") (:file "clipboard") (:file "transcript-pane")
                  (:file "prompt") (:file "bar") (:file "popup") (:file "pointing")
                  (:file "interactor") (:file "offers") (:file "plan-pane")
-                 (:file "world-mouse") (:file "layout-pane") (:file "keyboard")
+                 (:file "world-mouse") (:file "layout-pane") (:file "choosing")
+                 (:file "keyboard")
                  (:file "window") (:file "commands") (:file "menus") (:file "opening")
                  (:file "x-server") (:file "following")))))
 

@@ -164,10 +164,17 @@ above it and its ink. Return NIL if PANE is empty."
       (ars-magna.cli:interrupt-session (window-session window))
       (pass-key (window-conversation window) key)))
 
+(defun input-line-empty-p (window)
+  (string= "" (or (second (interactor-contents (pane-named window 'interactor))) "")))
+
 (defun handle-key-in-input-line (window event)
   "Handle the key of EVENT for the input line of WINDOW. Return true if the key has an effect."
-  (let ((action (window-key-action event)) (key (editor-key-of-event event)))
-    (cond ((handle-key-in-popup window (clim:keyboard-event-key-name event)) t)
+  (let ((action (window-key-action event)) (key (editor-key-of-event event))
+        (name (key-name-of-event event)))
+    (cond ((handle-key-in-popup window name) t)
+          ((and (member name '(:tab :iso-left-tab)) (input-line-empty-p window))
+           (move-keys window (if (eq name :tab) 1 -1))
+           t)
           (action (funcall action window) t)
           (key (pass-key-to-prompt window key) t))))
 
@@ -205,8 +212,11 @@ above it and its ink. Return NIL if PANE is empty."
   (unless (robot-window-of sheet) (call-next-method)))
 
 (defun focus-on (pane)
-  (let ((window (window-of pane)) (port (clim:port pane)))
-    (setf (window-focus window) pane)
+  (let* ((window (window-of pane)) (port (clim:port pane))
+         (before (shiftf (window-focus window) pane)))
+    (unless (member before (list pane nil))
+      (setf (pane-chosen before) nil)
+      (request-refresh window))
     (when (member (focused-window port) (list window nil))
       (setf (clim:port-keyboard-input-focus port) pane))))
 

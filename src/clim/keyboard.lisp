@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.clim)
 
-;;; A click on the world or the details gives them the focus. Return, Escape, a click on the
-;;; transcript, or a character that is none of their keys gives it back to the prompt. While a line
-;;; is half typed, all characters go to it.
+;;; Tab, or a click on the world or the details, gives them the focus. Return, Escape, a click on
+;;; the transcript, or a character that is none of their keys gives it back to the prompt. While a
+;;; line is half typed, all characters go to it.
 
 (defun focus-input-line (window)
   (focus-and-repaint (pane-named window 'interactor)))
@@ -51,7 +51,8 @@ NIL."
             (button (unless (eq (button-command button) (close-popup window))
                       (funcall (button-command button)))
                     t)
-            (dx (move-view (pane-named window 'world) dx dy) t)
+            ((handle-choice-key window key-name character) t)
+            (dx (handle-arrow (pane-for-keys window) dx dy) t)
             ((member key-name '(:return :escape))
              (or (close-popup window) (focus-input-line window))
              t)
@@ -62,13 +63,18 @@ NIL."
 (defun key-modified-p (event)
   (or (modifier-pressed-p event clim:+control-key+) (modifier-pressed-p event clim:+meta-key+)))
 
+;; Some keyboards have a symbol of X for shift and Tab together, some do not.
+(defun key-name-of-event (event)
+  (let ((name (clim:keyboard-event-key-name event)))
+    (if (and (eq name :tab) (modifier-pressed-p event clim:+shift-key+)) :iso-left-tab name)))
+
 (defmethod clim:handle-event ((pane display-pane) (event clim:key-press-event))
   (let ((window (window-of pane)))
     (with-guarded-command (window "That key")
       (if (or (typep pane 'interactor-pane) (key-modified-p event))
           (handle-key-in-input-line window event)
-          (handle-key window (clim:keyboard-event-key-name event)
-            (clim:keyboard-event-character event))))))
+          (handle-key window (key-name-of-event event)
+                      (clim:keyboard-event-character event))))))
 
 ;;;; Keyboards that are not American
 

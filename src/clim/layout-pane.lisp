@@ -205,9 +205,14 @@ least height of the designators.")
           (max 40 (- (nth-value 1 (pane-size layout))
                      y +splitter-width+ +least-prompt-height+ +status-strip-height+)))))
 
-(defmethod pane-appearance ((pane splitter-pane)) (multiple-value-list (pane-size pane)))
+(defmethod pane-appearance ((pane splitter-pane))
+  (list (multiple-value-list (pane-size pane)) (has-keys-p pane)))
 
-(defmethod paint ((pane splitter-pane)) (clear-pane pane))
+(defmethod paint ((pane splitter-pane))
+  (clear-pane pane)
+  (when (has-keys-p pane)
+    (multiple-value-bind (width height) (pane-size pane)
+      (clim:draw-rectangle* pane 0 0 width height :ink clim:+dark-orange+))))
 
 (defmethod handle-press ((pane splitter-pane) button x y)
   (declare (ignore button x y))
@@ -252,12 +257,16 @@ and the robot, if the run has several robots."
 (defmethod pane-appearance ((pane title-pane))
   (let ((window (window-of pane)) (section (pane-section pane)))
     (list (section-title window section) (section-folded-p window section)
-          (multiple-value-list (pane-size pane)))))
+          (focused-section-p window section) (multiple-value-list (pane-size pane)))))
 
 (defmethod paint ((pane title-pane))
   (let* ((window (window-of pane)) (section (pane-section pane))
          (foldable-p (section-foldable-p section)))
     (with-pane-canvas (canvas pane)
+      (when (focused-section-p window section)
+        (multiple-value-bind (width height) (pane-size pane)
+          (with-gcontext (draw-gcontext* :foreground (svref lightblue* 9))
+            (draw-rectangle canvas draw-gcontext* 0 0 width height t))))
       (when foldable-p
         (draw-lines canvas draw-gcontext*
                     (if (section-folded-p window section) '(5 4 10 8 5 12) '(4 6 12 6 8 11))

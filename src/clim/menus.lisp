@@ -177,13 +177,17 @@ highlight the first row, or the last if STEP is negative. Return true if POPUP h
       (choose-row popup row)
       t)))
 
+(defun scroll-by-key (popup pixels)
+  (scroll-pane popup pixels)
+  t)
+
 (defun handle-key-in-popup (window name)
   "Handle the key called NAME in the popup of WINDOW. Return true if the key has an effect."
   (let ((popup (window-popup window)))
     (when (popup-open-p window)
       (case name
-        (:down (highlight-further-row popup 1))
-        (:up (highlight-further-row popup -1))
+        (:down (or (highlight-further-row popup 1) (scroll-by-key popup +scroll-step+)))
+        (:up (or (highlight-further-row popup -1) (scroll-by-key popup (- +scroll-step+))))
         (:right (open-neighbouring-menu window 1))
         (:left (open-neighbouring-menu window -1))
         ((:return :kp-enter) (choose-highlighted-row popup))))))

@@ -66,8 +66,9 @@ screen. WIDTH and HEIGHT are in screen pixels."
    ;; How far down the picture the pane begins, in pixels, and how high the picture is.
    (offset :initform 0 :accessor pane-offset)
    (extent :initform 0 :accessor pane-extent)
-   ;; Where the mouse was clicked last, as (x y).
+   ;; Where the mouse was clicked last, as (x y); the key of the object chosen by keys.
    (clicked :initform nil :accessor pane-clicked)
+   (chosen :initform nil :accessor pane-chosen)
    ;; What the mouse drags, with its button down: NIL for nothing.
    (handle-drag :initform nil :accessor pane-drag))
   (:default-initargs :background clim:+white+)
@@ -81,6 +82,8 @@ screen. WIDTH and HEIGHT are in screen pixels."
 returned before if PANE would look the same."))
 
 (defun window-of (pane) (clim:pane-frame pane))
+
+(defun has-keys-p (pane) (eq pane (window-focus (window-of pane))))
 
 (defun clear-pane (pane)
   (multiple-value-bind (width height) (pane-size pane)
@@ -125,9 +128,12 @@ would be cut off. Record in PANE what was painted where."
 (defun pane-shown-p (pane)
   (and (clim:sheet-grafted-p pane) (clim:sheet-enabled-p pane)))
 
+(defun whole-appearance (pane)
+  (list (pane-chosen pane) (pane-appearance pane)))
+
 (defun repaint (pane)
   (when (pane-shown-p pane)
-    (setf (pane-painted pane) (pane-appearance pane))
+    (setf (pane-painted pane) (whole-appearance pane))
     (call-buffered (lambda ()
                      (paint pane)
                      (when (limit-scroll-offset pane) (paint pane))
@@ -138,7 +144,7 @@ would be cut off. Record in PANE what was painted where."
     (update-description pane)))
 
 (defun repaint-if-changed (pane)
-  (when (and (pane-shown-p pane) (not (equal (pane-painted pane) (pane-appearance pane))))
+  (when (and (pane-shown-p pane) (not (equal (pane-painted pane) (whole-appearance pane))))
     (repaint pane)))
 
 ;;; The mouse: see pointing.lisp.
@@ -294,6 +300,12 @@ Return NIL if SUBJECT cannot be selected.")
   (:method ((image designator-image)) (list :designator (designator-image-number image)))
   (:method ((cell cell)) (list :cell (cell-x cell) (cell-y cell))))
 
+(defgeneric choice-key (subject)
+  (:documentation "Return a key that identifies SUBJECT in a pane when keys choose an object, and is
+compared by EQUAL. Return NIL if keys cannot choose SUBJECT.")
+  (:method (subject) (or (subject-key subject) (subject-title subject)))
+  (:method ((subject string)) nil))
+
 (defun same-subject-p (one other)
   (or (eq one other)
       (let ((key (subject-key one))) (and key (equal key (subject-key other))))))
@@ -310,12 +322,16 @@ Return NIL if SUBJECT cannot be selected.")
          (picked (and key (member key subjects :key #'subject-key :test #'equal))))
     (append picked (ldiff subjects picked))))
 
+(defun marked-p (pane subject)
+  "True if SUBJECT is selected, or chosen in PANE by keys."
+  (let ((key (window-selection (window-of pane))) (chosen (pane-chosen pane)))
+    (or (and key (equal key (subject-key subject)))
+        (and chosen (equal chosen (choice-key subject))))))
+
 (defun selected-boxes (pane)
   "Return a list of the boxes (left top right bottom) where PANE shows the selected subject."
-  (let ((key (window-selection (window-of pane))))
-    (and key
-         (loop for (subject . box) in (pane-subjects pane)
-               when (equal key (subject-key subject)) collect box))))
+  (loop for (subject . box) in (pane-subjects pane)
+        when (marked-p pane subject) collect box))
 
 (defun mark-box (pane left top right bottom)
   (clim:draw-rectangle* pane (- left 2) (- top 2) (+ right 2) (+ bottom 2)

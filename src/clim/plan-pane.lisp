@@ -157,6 +157,8 @@
 (defmethod subject-title ((moment timeline-point))
   (format nil "Tick ~D" (timeline-point-tick moment)))
 
+(defmethod choice-key ((mark fold-mark)) (list :fold-mark (fold-mark-serial mark)))
+
 (defmethod subject-key ((image task-image)) (list :task (task-image-serial image)))
 (defmethod subject-key ((bar bar)) (list :task (bar-serial bar)))
 

@@ -176,7 +176,12 @@ the symbol of a command, the menu to show, or T."
   "Lists (gesture effect): the rows of the help panel on the mouse.")
 
 (defparameter *key-help*
-  '(("arrows" "move the view") ("return" "go back to the input line")
+  '(("tab" "give the keys to the next display; with shift, to the last")
+    ("arrows" "move the view, or scroll; left and right fold and unfold")
+    ("page up, down" "scroll by a page; in the world, zoom")
+    ("< >" "choose the previous or next object of the display")
+    ("M" "open the menu of actions of the object, as the menu key does")
+    ("return" "click on the chosen object, or go back to the input line")
     ("escape" "close this panel, or go back to the input line")
     ("F10" "open the menus: arrows move, return chooses"))
   "Lists (key effect): the rows of the help panel on keys that are not keys of buttons.")
@@ -185,7 +190,7 @@ the symbol of a command, the menu to show, or T."
   (flet ((rows (lists)
            (loop for (text more) in lists
                  collect (make-row (format nil "  ~A" text) :more more))))
-    (append (list (make-row "Keys, after a click on a display"))
+    (append (list (make-row "Keys, after Tab in an empty line, or a click on a display"))
             (rows (loop for button in *bar-buttons*
                         collect (list (key-label (button-key button)) (button-help button))))
             (rows *key-help*)
