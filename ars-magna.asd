@@ -234,7 +234,8 @@
   :components
   ((:module "src/clim" :serial t
     :components ((:file "package") (:file "plan-look") (:file "watcher") (:file "arrangement")
-                 (:file "looks") (:file "magnification") (:file "canvas") (:file "panes") (:file "world-pane")
+                 (:file "looks") (:file "magnification") (:file "fallback-fonts") (:file "canvas")
+                 (:file "panes") (:file "world-pane")
                  (:file "transcript") (:file "clipboard") (:file "transcript-pane")
                  (:file "prompt") (:file "bar") (:file "popup") (:file "pointing")
                  (:file "interactor") (:file "offers") (:file "plan-pane")
@@ -270,7 +271,7 @@
   :components ((:module "tests" :serial t
                 :components ((:file "clim-client") (:file "clim-window") (:file "clim-layout")
                              (:file "clim-view") (:file "clim-pointing")
-                             (:file "clim-holding")
+                             (:file "clim-holding") (:file "clim-choosing")
                              (:file "clim-menus")
                              (:file "clim-progress") (:file "clim-plans") (:file "clim-truths")
                              (:file "clim-talking") (:file "clim-going-on")

@@ -80,6 +80,37 @@
                   (is (time:paused-p simulation)))
         (run:stop-clock simulation)))))
 
+;; The ticks that go on would undo it.
+(test timeline.a-click-pauses-a-run-that-goes-on
+  (in-window (window robot)
+    (let ((simulation (time:current-simulation)))
+      (run:keep-forks)
+      (run:run-ticks 8)
+      (window::publish-snapshot (window::window-watcher window) simulation)
+      (run:start-clock simulation :rate 50)
+      (unwind-protect
+           (progn (window::rewind-run-to-tick (pane window 'window::plan) 5)
+                  (is (time:paused-p simulation))
+                  (is (equal '("rewind-to 5") (lines-given window))))
+        (run:stop-clock simulation)))))
+
+(test dragging.while-time-passes-it-says-what-to-do-first
+  (in-window (window robot)
+    (let ((simulation (time:current-simulation)) (pane (painted-world window)))
+      (command:robot-turn robot 1 nil)
+      (run:start-clock simulation :rate 1/8)
+      (unwind-protect
+           (let ((before (list (window::pane-left pane) (window::pane-top pane))))
+             (carry pane '(28 36) '(124 20))
+             (is (mentions-p (window::window-hint window) "To move BOX#1, pause the run first"))
+             (is (null (lines-given window)))
+             (is (null (window::pane-ghost pane)))
+             (is (equal before (list (window::pane-left pane) (window::pane-top pane))))
+             (time:pause simulation)
+             (carry pane '(28 36) '(124 20))
+             (is (= 1 (length (lines-given window)))))
+        (run:stop-clock simulation)))))
+
 ;;; The view.
 
 (test strip.says-that-all-is-in-view-while-it-is

@@ -193,6 +193,18 @@
     (is (<= (length (window::latest-lines transcript 5000)) 4001))
     (is (equal '("4999" "") (window::latest-lines transcript 2)))))
 
+(test transcript.tabs-reach-the-next-of-the-columns-that-are-eight-apart
+  (let ((transcript (window::make-transcript (constantly nil))))
+    (window::write-to-transcript transcript (format nil "a~Cb~C~Cc" #\Tab #\Tab #\Tab))
+    (is (equal '("a       b               c") (window::latest-lines transcript 1)))
+    (window::write-to-transcript transcript (format nil "~Cd~%1234567~C8~%" #\Tab #\Tab))
+    (is (equal '("a       b               c       d" "1234567 8" "")
+               (window::latest-lines transcript 3)))
+    (window::write-to-transcript transcript (format nil "~C[31mred~C[0m~C.~%"
+                                                    #\Escape #\Escape #\Tab))
+    (is (equal "red     ."
+               (cli:unpainted-text (first (window::latest-lines transcript 2)))))))
+
 ;;; Commands.
 
 (test window.commands-steer-a-live-run

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(painted-spans unpainted-text text-broken-at-blanks))
+(export '(painted-spans unpainted-text text-broken-at-blanks char-columns))
 
 ;;; Only this file has escape codes, those of all present terminals. Colours are the sixteen that
 ;;; users choose themselves, to suit the background; white and black are left for plain text.
@@ -129,6 +129,7 @@ only a terminal has colours, and only if the environment variable NO_COLOR is no
 ;;; interpret, such as those for colours, have none.
 
 (defun char-columns (char)
+  "Return the width of CHAR at a terminal, in columns: 0, 1 or 2."
   (if (< (char-code char) 256) 1 (char-width char)))
 
 (defun columns-of-chars (text)

@@ -124,22 +124,48 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
 (defmethod paint-string ((canvas clim-canvas) gcontext x y string)
   (extend-bounding-box canvas x (- y 10) (+ x (* +character-width+ (length string))) (+ y 3))
   (when (text-fully-visible-p canvas y)
-    (clim:draw-text* (canvas-medium canvas) string x y
-                     :text-style (text-style :fix :roman +column-font-size+
-                                             (canvas-magnification canvas))
-                     :ink (clim-ink (gcontext-foreground gcontext)))))
+    (if (plain-text-p string)
+        (draw-characters canvas gcontext x y string)
+        (paint-each-character canvas gcontext x y string))))
+
+(defun column-text-style (canvas)
+  (text-style :fix :roman +column-font-size+ (canvas-magnification canvas)))
+
+(defun draw-characters (canvas gcontext x y string &optional (style (column-text-style canvas)))
+  (clim:draw-text* (canvas-medium canvas) string x y
+                   :text-style style :ink (clim-ink (gcontext-foreground gcontext))))
+
+(defun text-style-for-character (canvas character)
+  "Return the text style to draw CHARACTER in on CANVAS. Say so in the window if there is no font."
+  (let ((medium (canvas-medium canvas)) (standard (column-text-style canvas)))
+    (when (and (null (font-for character)) (typep medium 'display-pane))
+      (report-missing-character (window-of medium) character))
+    (or (fallback-text-style (clim:port medium) character (clim:text-style-size standard)
+                             (* (canvas-magnification canvas) +character-width+
+                                (max 1 (ars-magna.cli:char-columns character))))
+        standard)))
+
+(defun paint-each-character (canvas gcontext x y string)
+  "Paint STRING, each character in a font that has it. Wide characters take two columns."
+  (loop for character across string
+        for at = x then (+ at width)
+        for width = (* +character-width+ (ars-magna.cli:char-columns character))
+        do (draw-characters canvas gcontext at y (string character)
+                            (text-style-for-character canvas character))))
 
 (defmethod paint-text ((canvas clim-canvas) gcontext x y string size anchor upward-p bold-p)
   (declare (ignore upward-p))
   (let* ((size (max size +label-size+)) (width (text-width string size bold-p))
          (left (- x (ecase anchor (:start 0) (:middle (/ width 2)) (:end width)))))
     (extend-bounding-box canvas left (- y size) (+ left width) (+ y 3))
-    (when (text-fully-visible-p canvas y)
-      (clim:draw-text* (canvas-medium canvas) string x y
-                       :align-x (ecase anchor (:start :left) (:middle :center) (:end :right))
-                       :text-style (text-style :sans-serif (if bold-p :bold :roman) size
-                                               (canvas-magnification canvas))
-                       :ink (clim-ink (gcontext-foreground gcontext))))))
+    (cond ((not (text-fully-visible-p canvas y)))
+          ((plain-text-p string)
+           (clim:draw-text* (canvas-medium canvas) string x y
+                            :align-x (ecase anchor (:start :left) (:middle :center) (:end :right))
+                            :text-style (text-style :sans-serif (if bold-p :bold :roman) size
+                                                    (canvas-magnification canvas))
+                            :ink (clim-ink (gcontext-foreground gcontext))))
+          (t (paint-each-character canvas gcontext left y string)))))
 
 (defmethod character-width ((canvas clim-canvas) size)
   (* 61/100 (max size +label-size+)))

@@ -39,6 +39,7 @@
   "Send keys to PANE from now on, and say in the status strip what they do."
   (let ((window (window-of pane)))
     (setf (window-typing-p window) nil)
+    (close-popup window)
     (focus-on pane)
     (show-hint window (keys-hint pane))
     (refresh window)))
@@ -81,22 +82,32 @@
 
 ;;; Objects.
 
+(defgeneric choice-rank (pane left top right bottom)
+  (:documentation "Return a number: the place, among others, of the object that PANE shows in the
+box LEFT ... BOTTOM. Keys choose objects in the order of these numbers.")
+  ;; By rows.
+  (:method ((pane display-pane) left top right bottom)
+    (declare (ignore right bottom))
+    (+ left (* 10000 (round top 8))))
+  ;; By the distance from the robot.
+  (:method ((pane world-pane) left top right bottom)
+    (multiple-value-bind (x y) (robot-position-in-pane pane)
+      (if x
+          (+ (expt (- (/ (+ left right) 2) x) 2) (expt (- (/ (+ top bottom) 2) y) 2))
+          0))))
+
+(defun box-key (box) (choice-key (first box)))
+
 (defun subjects-in-order (pane)
-  "Return lists (subject left top right bottom), one for each object that PANE shows, by rows."
-  (sort (remove-duplicates (remove nil (pane-subjects pane)
-                                   :key (lambda (box) (choice-key (first box))))
-                           :key (lambda (box) (choice-key (first box)))
-                           :test #'equal :from-end t)
-        (lambda (one other)
-          (destructuring-bind ((left top) (other-left other-top)) (list one other)
-            (if (< (abs (- top other-top)) 6) (< left other-left) (< top other-top))))
-        :key (lambda (box) (list (second box) (third box)))))
+  "Return lists (subject left top right bottom), one for each object of PANE, in the order of keys."
+  (stable-sort (remove-duplicates (remove nil (pane-subjects pane) :key #'box-key)
+                                  :key #'box-key :test #'equal)
+               #'< :key (lambda (box) (apply #'choice-rank pane (rest box)))))
 
 (defun chosen-box (pane)
   "Return the list (subject left top right bottom) of the object chosen in PANE by keys, or NIL."
   (and (pane-chosen pane)
-       (find (pane-chosen pane) (pane-subjects pane)
-             :key (lambda (box) (choice-key (first box))) :test #'equal)))
+       (find (pane-chosen pane) (pane-subjects pane) :key #'box-key :test #'equal)))
 
 (defun selected-box (pane)
   "Return the list (subject left top right bottom) of the selected object if PANE shows it."
@@ -123,8 +134,7 @@
   (let* ((boxes (subjects-in-order pane))
          (before (or (chosen-box pane) (selected-box pane)))
          (place (and before
-                     (position (choice-key (first before)) boxes
-                               :key (lambda (box) (choice-key (first box))) :test #'equal)))
+                     (position (box-key before) boxes :key #'box-key :test #'equal)))
          (box (and boxes
                    (nth (mod (if place (+ place step) (min 0 step)) (length boxes)) boxes))))
     (if box
@@ -192,7 +202,7 @@ it has an effect."
         (:prior (done (handle-page-key pane -1)))
         (:next (done (handle-page-key pane 1)))
         (:menu (done (open-menu-by-key pane)))
-        ((:return :kp-enter) (click-chosen pane))
+        ((:return :kp-enter) (and (not (popup-open-p window)) (click-chosen pane)))
         (t (case character
              (#\N (done (choose-further-subject pane 1)))
              (#\P (done (choose-further-subject pane -1)))

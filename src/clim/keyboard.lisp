@@ -63,6 +63,10 @@ NIL."
 (defun key-modified-p (event)
   (or (modifier-pressed-p event clim:+control-key+) (modifier-pressed-p event clim:+meta-key+)))
 
+(defun for-input-line-p (event)
+  "True if the key of EVENT is for the input line even while a display has the focus."
+  (or (key-modified-p event) (eq (clim:keyboard-event-key-name event) :insert)))
+
 ;; Some keyboards have a symbol of X for shift and Tab together, some do not.
 (defun key-name-of-event (event)
   (let ((name (clim:keyboard-event-key-name event)))
@@ -71,7 +75,7 @@ NIL."
 (defmethod clim:handle-event ((pane display-pane) (event clim:key-press-event))
   (let ((window (window-of pane)))
     (with-guarded-command (window "That key")
-      (if (or (typep pane 'interactor-pane) (key-modified-p event))
+      (if (or (typep pane 'interactor-pane) (for-input-line-p event))
           (handle-key-in-input-line window event)
           (handle-key window (key-name-of-event event)
                       (clim:keyboard-event-character event))))))

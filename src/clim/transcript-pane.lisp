@@ -25,29 +25,40 @@
 
 ;;; Rows.
 
-(defstruct (text-row (:constructor make-text-row (number start stop spans)) (:copier nil))
-  "A row on the screen: the part of line NUMBER of the transcript from column START to STOP. SPANS
-are the coloured parts of the whole line."
+(defstruct (text-row (:constructor make-text-row (number start stop spans text)) (:copier nil))
+  "A row on the screen: the part of line NUMBER of the transcript from character START to STOP.
+SPANS are the coloured parts of the whole line, TEXT is the line without colours."
   (number 0 :type fixnum :read-only t)
   (start 0 :type fixnum :read-only t)
   (stop 0 :type fixnum :read-only t)
-  (spans '() :type list :read-only t))
+  (spans '() :type list :read-only t)
+  (text "" :type string :read-only t))
+
+(defun text-columns (text start end)
+  "Return the width of TEXT from START to END on the screen, in columns."
+  (reduce #'+ text :key #'ars-magna.cli:char-columns :start start :end end))
+
+(defun column-end (text start columns)
+  "Return the end of the part of TEXT from START on that fits in COLUMNS."
+  (or (loop for position from start below (length text)
+            sum (ars-magna.cli:char-columns (char text position)) into width
+            when (< columns width) return position)
+      (length text)))
 
 (defun row-end (text start columns)
   "Return the index in TEXT where a row that begins at START ends. The row has at most COLUMNS
-characters and ends after a blank, if possible."
-  (let ((end (+ start columns)))
-    (if (<= (length text) end)
-        (length text)
-        (let ((blank (position #\Space text :start start :end end :from-end t)))
-          (if (and blank (< (+ start (floor columns 2)) blank)) (1+ blank) end)))))
+and ends after a blank, if possible."
+  (let* ((end (column-end text start columns))
+         (blank (and (< end (length text))
+                     (position #\Space text :start start :end end :from-end t))))
+    (if (and blank (< (+ start (floor (- end start) 2)) blank)) (1+ blank) end)))
 
 (defun rows-of-line (number line columns)
   (loop with text = (ars-magna.cli:unpainted-text line)
         with spans = (ars-magna.cli:painted-spans line)
         for start = 0 then end
         for end = (row-end text start columns)
-        collect (make-text-row number start end spans)
+        collect (make-text-row number start end spans text)
         until (= end (length text))))
 
 (defun columns-and-rows (pane)
@@ -116,7 +127,8 @@ are dark, because the transcript is white.")
         for end = (min (+ column (length text)) (text-row-stop row))
         when (< start end)
           do (paint-glyphs-at-column canvas (subseq text (- start column) (- end column))
-                         (- start (text-row-start row)) y ink)
+                                     (text-columns (text-row-text row) (text-row-start row) start)
+                                     y ink)
         do (incf column (length text))))
 
 (defun position-before-p (place other)
@@ -146,8 +158,11 @@ and TO, lists (number column)."
   (multiple-value-bind (start stop) (selected-columns row from to)
     (when (< start stop)
       (with-gcontext (draw-gcontext* :foreground +selection-color+)
-        (draw-rectangle canvas draw-gcontext* (column-x (- start (text-row-start row))) (- y 12)
-                        (* (- stop start) +character-width+) +line-height+ t)))))
+        (draw-rectangle canvas draw-gcontext*
+                        (column-x (text-columns (text-row-text row) (text-row-start row) start))
+                        (- y 12)
+                        (* (text-columns (text-row-text row) start stop) +character-width+)
+                        +line-height+ t)))))
 
 (defmethod paint ((pane transcript-pane))
   (multiple-value-bind (columns rows) (columns-and-rows pane)
@@ -201,8 +216,9 @@ and TO, lists (number column)."
          (row (and rows (nth (clamp (floor (- y 2) +line-height+) 0 (1- (length rows))) rows))))
     (and row
          (list (text-row-number row)
-               (clamp (+ (text-row-start row) (round (- x 4) +character-width+))
-                      (text-row-start row) (text-row-stop row))))))
+               (min (column-end (text-row-text row) (text-row-start row)
+                                (max 0 (round (- x 4) +character-width+)))
+                    (text-row-stop row))))))
 
 (defun selected-text (pane)
   "Return the selected text of PANE, or its whole transcript if nothing is selected."
