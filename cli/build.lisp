@@ -10,8 +10,8 @@
 (defpackage :ars-magna.build
   (:documentation "Compiles the project, saves the prompt's core and runs the tests.")
   (:use :cl)
-  (:export #:configure #:show-progress #:print-missing-libraries #:print-window-libraries #:get-window-libraries
-           #:load-project #:load-strictly
+  (:export #:configure #:show-progress #:print-missing-libraries #:print-window-libraries
+           #:get-window-libraries #:load-project #:load-strictly
            #:print-library-versions #:load-tests #:save-prompt #:save-window-prompt #:run-tests
            #:record-sessions #:write-manual))
 
