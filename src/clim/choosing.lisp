@@ -204,6 +204,6 @@ it has an effect."
         (:menu (done (open-menu-by-key pane)))
         ((:return :kp-enter) (and (not (popup-open-p window)) (click-chosen pane)))
         (t (case character
-             (#\N (done (choose-further-subject pane 1)))
-             (#\P (done (choose-further-subject pane -1)))
+             (#\> (done (choose-further-subject pane 1)))
+             (#\< (done (choose-further-subject pane -1)))
              (#\M (done (open-menu-by-key pane)))))))))
