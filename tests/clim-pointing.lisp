@@ -377,7 +377,7 @@ leads to both."
   (in-window (window robot)
     (lay-out window 640 480)
     (let ((pane (pane window 'window::bar)))
-      (is (= (length window::*bar-buttons*) (length (window::pane-subjects pane))))
+      (is (= (length window::*bar-parts*) (length (window::pane-subjects pane))))
       (is (equal "Pause the run, or let time pass again (key: space)"
                  (window::hover-text pane 20 12)))
       (loop for (nil left nil right) in (window::pane-subjects pane)

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(parameter-value-text))
+
 (defun current-live-simulation ()
   "Return the current simulation. Signals BAD-LINE if the simulation is not live."
   (check-run-not-over)
@@ -134,12 +136,31 @@ parameters whose names begin with NAME, or else those whose names contain NAME."
   (write-trimmed-line "~A" (parameter-text parameter))
   (format t "~A~%" (parameter-sentence parameter)))
 
-(define-line "PARAMS" (session (name :parameter "the name of a parameter" :optional)
+(defun remove-noise ()
+  "Remove all noise, also noise that was set after an earlier call of CLEAN-SIMULATION."
+  (dirty-simulation)
+  (clean-simulation))
+
+(defun set-default-parameters ()
+  (dirty-simulation)
+  (dolist (parameter (all-parameters))
+    (setf (parameter-value parameter) (parameter-default parameter))))
+
+(define-line "PARAMS" (session (name :parameter "the name of a parameter, CLEAN or DEFAULT"
+                                     :optional)
                                (value :rest "its new value" :optional))
-    (:running)
+    (:running
+     "PARAMS CLEAN removes all noise, as CLEAN-SIMULATION does. PARAMS DEFAULT gives all parameters
+their default values.")
     "List all parameters, or those with NAME in their names, or set one to VALUE."
-  (let ((parameters (parameters-matching (or name ""))))
-    (cond ((rest parameters)
+  (let ((parameters (parameters-matching (or name "")))
+        (all (assoc name '(("clean" remove-noise) ("default" set-default-parameters))
+                    :test #'equalp)))
+    (cond ((and all value) (reject-line "PARAMS ~:@(~A~) takes no value." name))
+          (all
+           (funcall (second all))
+           (format t "The parameters are now: ~A.~%" (parameters-summary (parameter-values))))
+          ((rest parameters)
            (when value (reject-line "~A is a part of several names. Type more of the name." name))
            (write-parameters parameters))
           (t (let ((parameter (or (first parameters) (find-parameter name))))

@@ -200,7 +200,8 @@ included. Return NIL if the choices are not known. May signal BAD-LINE, as witho
 (define-argument-choices :odometer-part '(:pos :ang))
 (define-argument-choices :place-type (mapcar #'place-type-name (all-place-types)))
 (define-argument-choices :rate '(free))
-(define-argument-choices :parameter (mapcar #'parameter-name (all-parameters)))
+(define-argument-choices :parameter
+  (append (mapcar #'parameter-name (all-parameters)) '("clean" "default")))
 (define-argument-choices :switch '(on off))
 (define-argument-choices :off '(off))
 (define-argument-choices :experiment (append (mapcar #'experiment-name (all-experiments)) '(off)))

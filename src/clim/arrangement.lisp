@@ -25,13 +25,17 @@
 (defconstant +section-top-margin+ 6
   "The distance from the top of a section to its first line, in pixels.")
 
-(define-constant +sections+ '(state designators cameras hands bins plan)
+(define-constant +sections+ '(state designators cameras hands bins plan parameters)
   :test #'equal
   :documentation "The displays in the column beside the world, from top to bottom.")
 
-(define-constant +titled+ '(world state designators cameras hands bins plan transcript)
+(define-constant +titled+ '(world state designators cameras hands bins plan parameters transcript)
   :test #'equal
   :documentation "The parts of the window that have titles.")
+
+(define-constant +greedy-sections+ '(plan parameters)
+  :test #'equal
+  :documentation "The sections that need more height than there is, and get half of it or more.")
 
 (define-constant +splitters+ '(side-splitter plan-splitter low-splitter)
   :test #'equal
@@ -47,7 +51,7 @@ MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit th
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))
   (transcript-height nil :type (or null real))
-  (folded '(plan) :type list)
+  (folded '(plan parameters) :type list)
   (magnification nil :type (or null (integer 1))))
 
 (defun title-pane-name (section)
@@ -55,15 +59,25 @@ MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit th
 
 (defun plan-column-p (preferences width)
   (and (>= width +least-width-for-plan-column+)
-       (not (member 'plan (preferences-folded preferences)))))
+       (not (folded-p 'plan preferences))))
+
+(defun folded-p (section preferences)
+  (and (member section (preferences-folded preferences)) t))
 
 (defun column-sections (preferences width)
-  (if (plan-column-p preferences width) (remove 'plan +sections+) +sections+))
+  "Return the sections of the column in a window WIDTH pixels wide. Parameters have no title there
+while they are folded."
+  (remove-if (lambda (section)
+               (case section
+                 (plan (plan-column-p preferences width))
+                 (parameters (folded-p 'parameters preferences))))
+             +sections+))
 
 (defun default-details-width (preferences width)
   "Return the default width of the column of sections in a window WIDTH pixels wide. The column is
-wider if it shows plans, because plans have long lines."
-  (if (or (member 'plan (preferences-folded preferences)) (plan-column-p preferences width))
+wider if it shows plans or parameters, because these have long lines."
+  (if (and (folded-p 'parameters preferences)
+           (or (folded-p 'plan preferences) (plan-column-p preferences width)))
       (clamp (floor width 3) 200 360)
       (clamp (floor (* 9 width) 20) 200 400)))
 
@@ -95,17 +109,18 @@ pixels). If HEIGHT is enough, each section gets what it needs, and the plan or t
 the rest. Otherwise each gets a fair share."
   (cond ((null needs) '())
         ((<= (reduce #'+ needs :key #'second) height) (add-unused-height needs height))
-        (t (divide-height-with-plan needs height))))
+        (t (divide-scarce-height needs height))))
 
-(defun divide-height-with-plan (needs height)
-  "Divide HEIGHT, which is less than NEEDS. The section of plans gets what it needs, up to half of
-HEIGHT, or more if the others leave more. The others get fair shares."
-  (let ((plan (find 'plan needs :key #'first)) (others (remove 'plan needs :key #'first)))
-    (if (and plan others)
-        (let ((share (min (second plan)
+(defun divide-scarce-height (needs height)
+  "Divide HEIGHT, which is less than NEEDS. The first of the greedy sections gets what it needs, up
+to half of HEIGHT, or more if the others leave more. The others get fair shares."
+  (let* ((greedy (find-if (lambda (need) (member (first need) +greedy-sections+)) needs))
+         (others (remove greedy needs)))
+    (if (and greedy others)
+        (let ((share (min (second greedy)
                           (max (floor height 2)
                                (- height (reduce #'+ others :key #'second))))))
-          (cons (list 'plan share) (divide-height others (- height share))))
+          (cons (list (first greedy) share) (divide-height others (- height share))))
         (divide-height-fairly needs height))))
 
 (defun height-of-whole-lines (height)
@@ -186,7 +201,10 @@ pixels high. The column of sections is DOWN pixels high."
             (plan-column-places preferences width left top height down)
             (section-column-places (column-sections preferences width) needs
                                    (preferences-folded preferences)
-                                   (+ left plan) top column down))))
+                                   (+ left plan) top column down)
+            (when (folded-p 'parameters preferences)
+              (list (list (title-pane-name 'parameters) left top 0 0)
+                    (list 'parameters left top 0 0))))))
 
 (defun transcript-places (width top bottom)
   "Return the places, from TOP to BOTTOM, of a splitter and the transcript below it."

@@ -31,48 +31,132 @@ and return the label or whether the button is on."
 
 (defun all-names-shown-p (window) (and (member :names (window-layers window)) t))
 
-(defparameter *bar-buttons*
+;;; The slider's buttons are not drawn. They have the keys that step the rate.
+
+(defparameter *bar-parts*
   (list (make-button 'pause-label #\Space 'com-pause-or-resume
                      "Pause the run, or let time pass again"
                      (lambda (window) (paused-until-resume-p (window-simulation window))))
         (make-button "Step" #\. 'com-step "Let one tick pass, then pause")
-        (make-button "Slower" #\- 'com-slower "Halve the rate of ticks")
-        (make-button "Faster" #\+ 'com-faster "Double the rate of ticks")
+        (make-rate-slider
+         (list (make-button "Slower" #\- 'com-slower "Halve the rate of ticks")
+               (make-button "Faster" #\+ 'com-faster "Double the rate of ticks")))
         (make-button "Back" #\B 'com-back "Go back ten ticks, and pause")
         (make-button "Fit" #\F 'com-fit "Show the whole map")
         (make-button "Follow" #\R 'com-follow "Keep the robot in view" 'view-follows-robot-p)
         (make-button "Names" #\N 'com-names "Show or hide the names of all things" 'all-names-shown-p)
         (make-button "Layers" #\L 'com-layers "Choose what the world shows")
+        (make-button "Params" #\P 'com-parameters "Show and change the simulation parameters"
+                     (lambda (window) (not (section-folded-p window 'parameters))))
         (make-button "Help" #\? 'com-help "Show what the keys and the mouse do"))
-  "The buttons of the tool bar, from left to right.")
+  "The parts of the tool bar, from left to right: buttons and a slider.")
+
+(defparameter *bar-buttons*
+  (loop for part in *bar-parts*
+        append (if (button-p part) (list part) (rate-slider-buttons part)))
+  "The buttons of the tool bar and of its slider.")
 
 ;;; The pane.
 
-(defclass bar-pane (display-pane) ()
+(defclass bar-pane (display-pane)
+  (;; The left end and the width of the slider's track, in pixels.
+   (track :initform '(0 100) :accessor pane-track)
+   ;; The rate to which the slider is dragged, until it takes effect; or NIL.
+   (dragged-rate :initform nil :accessor pane-dragged-rate))
   (:default-initargs :background (clim-ink +bar-color+))
   (:documentation "The tool bar."))
 
+(defun rate-of-bar (pane)
+  "Return the rate that the slider in PANE shows: ticks per second, :FREE, or NIL if there is none."
+  (or (pane-dragged-rate pane) (chosen-rate (window-simulation (window-of pane)))))
+
+(defun button-text (button window)
+  (let ((label (button-label button)))
+    (if (stringp label) label (funcall label window))))
+
+(defun bar-button-width (button window)
+  "Return the width of BUTTON in the tool bar of WINDOW, in pixels. If its label changes, there is
+room for both labels, so that the other parts of the tool bar stay in place."
+  (if (stringp (button-label button))
+      (max 40 (button-width (button-text button window)))
+      (button-width "Resume")))
+
 (defmethod pane-appearance ((pane bar-pane))
   (let ((window (window-of pane)))
-    (loop for button in *bar-buttons*
-          for label = (button-label button)
-          for lit-p = (button-lit-p button)
-          collect (list (if (stringp label) label (funcall label window))
-                        (and lit-p (funcall lit-p window) t)))))
+    (list* (multiple-value-list (pane-size pane)) (rate-of-bar pane)
+           (loop for button in (remove-if-not #'button-p *bar-parts*)
+                 for lit-p = (button-lit-p button)
+                 collect (list (button-text button window)
+                               (and lit-p (funcall lit-p window) t))))))
+
+(defun slider-width (pane)
+  "Return the width of the slider in PANE: what the buttons leave, within limits, in pixels."
+  (let ((window (window-of pane)))
+    (clamp (- (pane-size pane) 12
+              (loop for part in *bar-parts*
+                    when (button-p part) sum (+ 4 (bar-button-width part window))))
+           (+ 16 +rate-text-width+ +least-track-width+)
+           (+ 16 +rate-text-width+ +greatest-track-width+))))
+
+(defgeneric draw-bar-part (part canvas pane x)
+  (:documentation "Draw PART of the tool bar PANE from X on. Return the x coordinate of its end.")
+  (:method ((button button) canvas pane x)
+    (let* ((window (window-of pane)) (lit-p (button-lit-p button)))
+      (draw-button canvas button (button-text button window) (and lit-p (funcall lit-p window)) x 3
+                   (bar-button-width button window) (- +tool-bar-height+ 7))))
+  (:method ((slider rate-slider) canvas pane x)
+    (let ((width (slider-width pane)))
+      (setf (pane-track pane)
+            (multiple-value-list (draw-rate-slider canvas slider (rate-of-bar pane) x width
+                                                   +tool-bar-height+)))
+      (+ x width))))
 
 (defmethod paint ((pane bar-pane))
   (with-pane-canvas (canvas pane)
     (loop with x = 4
-          for button in *bar-buttons*
-          for (text lit-p) in (pane-appearance pane)
-          for width = (max 48 (button-width text))
-          do (setf x (+ 4 (draw-button canvas button text lit-p x 3 width
-                                       (- +tool-bar-height+ 7)))))))
+          for part in *bar-parts*
+          do (setf x (+ 4 (draw-bar-part part canvas pane x))))))
+
+;;; The mouse.
+
+(defun bar-part-at (pane x y) (subject-at (pane-subjects pane) x y))
+
+(defmethod hover-text ((pane bar-pane) x y)
+  (if (rate-slider-p (bar-part-at pane x y))
+      (rate-hover-text (rate-of-bar pane))
+      (call-next-method)))
+
+(defmethod handle-press ((pane bar-pane) button x y)
+  (cond ((not (rate-slider-p (bar-part-at pane x y))) (handle-click pane button x y))
+        ((null (rate-of-bar pane)) (show-hint (window-of pane) +no-rate-text+))
+        ((eq button :left)
+         (setf (pane-drag pane) :rate)
+         (handle-drag pane x y))))
+
+;; A live run has the new rate while the slider is dragged. A trial gets a line for the last rate.
+(defmethod handle-drag ((pane bar-pane) x y)
+  (declare (ignore y))
+  (destructuring-bind (left width) (pane-track pane)
+    (let ((rate (rate-at-track-offset (- x left) width))
+          (simulation (window-simulation (window-of pane))))
+      (unless (eql rate (rate-of-bar pane))
+        (setf (pane-dragged-rate pane) rate)
+        (when (live-p simulation) (set-rate rate simulation))
+        (repaint-if-changed pane)))))
+
+(defmethod handle-drop ((pane bar-pane) x y)
+  (declare (ignore x y))
+  (let ((rate (shiftf (pane-dragged-rate pane) nil)))
+    (when rate (change-rate-to (window-of pane) rate))))
+
+(defmethod handle-wheel ((pane bar-pane) steps x y)
+  (when (rate-slider-p (bar-part-at pane x y))
+    (funcall (if (plusp steps) 'com-slower 'com-faster))))
 
 (defmethod handle-click ((pane bar-pane) mouse-button x y)
   (declare (ignore mouse-button))
-  (let ((button (subject-at (pane-subjects pane) x y)))
-    (when button (funcall (button-command button)))))
+  (let ((part (bar-part-at pane x y)))
+    (when (button-p part) (funcall (button-command part)))))
 
 ;;;; The strip
 

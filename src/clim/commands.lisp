@@ -48,24 +48,17 @@
 (defun change-rate-to (window rate)
   "Set the tick rate of the run of WINDOW to RATE, if its ticks pass by themselves."
   (let ((simulation (window-simulation window)))
-    (cond ((live-p simulation)
-           (set-rate rate simulation)
-           (write-in-window window "~:[Ticks pass as fast as possible~;~:*The rate is ~A ticks per ~
-                                    second~].~%"
-                            (and (realp rate) (number-text (simulation-rate simulation)))))
+    (cond ((live-p simulation) (set-rate rate simulation))
           ((chosen-rate simulation)
            (run-line-at-prompt (window-conversation window)
                                (format nil "rate ~:[free~;~:*~A~]"
                                       (and (realp rate) (number-text rate)))))
-          (t (write-in-window window "Time passes in this run only while commands need it, so ~
-                                      there is no tick rate.~%")))))
+          (t (write-in-window window "~A~%" +no-rate-text+)))
+    (repaint-if-changed (pane-named window 'bar))))
 
 (defun multiply-rate (window factor)
   (let ((rate (chosen-rate (window-simulation window))))
-    (if (eq rate :free)
-        (write-in-window window "Ticks pass as fast as possible. The line RATE sets a number of ~
-                                 ticks per second.~%")
-        (change-rate-to window (clamp (* (or rate 1) factor) 1/8 100000)))))
+    (change-rate-to window (and rate (rate-of-next-step rate factor)))))
 
 (define-window-command (com-faster "Twice as fast") (window)
   (multiply-rate window 2))
@@ -145,6 +138,9 @@ calls COMMAND. Return 8 if no button calls COMMAND."
 
 (define-window-command (com-robots "Which robot") (window)
   (open-popup-below-bar window (robot-rows window) 'com-robots))
+
+(define-window-command (com-parameters "Parameters") (window)
+  (fold-section window 'parameters (not (section-folded-p window 'parameters))))
 
 (define-window-command (com-help "Keys and mouse") (window)
   (open-popup-below-bar window (help-rows) 'com-help))

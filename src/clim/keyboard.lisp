@@ -12,7 +12,7 @@
 (defun focus-clicked-pane (pane)
   "Send keys to the clicked PANE from now on, or to the prompt if PANE is the transcript."
   (typecase pane
-    ((or world-pane detail-pane plan-pane)
+    ((or world-pane detail-pane plan-pane parameter-pane)
      (setf (window-typing-p (window-of pane)) nil)
      (focus-on pane))
     (transcript-pane (focus-input-line (window-of pane)))))

@@ -75,9 +75,9 @@
 
 (defun needs-met-p (places needs)
   "True if PLACES give each section at least its height in NEEDS, lists (section pixels). The
-section of plans is ignored, because it takes any height."
+greedy sections are ignored, because they take any height."
   (loop for (section pixels) in needs
-        always (or (eq section 'plan)
+        always (or (member section +greedy-sections+)
                    (<= pixels (fifth (assoc section places))))))
 
 (defun greatest-height-needs (layout)
@@ -124,7 +124,8 @@ If only the heights needed now fit, return those."
   (arrange-panes pane))
 
 (defparameter *initial-heights*
-  '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 100))
+  '((state 108) (designators 22) (cameras 140) (hands 84) (bins 84) (plan 100)
+    (parameters 100))
   "Lists (section pixels): the height of each section before its contents are known. It is also the
 least height of the designators.")
 
@@ -140,6 +141,9 @@ least height of the designators.")
   (:method ((pane plan-pane) section width)
     (declare (ignore section width))
     10000)
+  (:method ((pane parameter-pane) section width)
+    (declare (ignore section width))
+    (panel-height pane))
   (:method ((pane detail-pane) section width)
     (if (window-robot (window-of pane))
         (max (cached-content-height pane (max 1 (- width +scroll-bar-width+)))
@@ -164,7 +168,7 @@ least height of the designators.")
 ;;; Folding.
 
 (defun section-folded-p (window section)
-  (and (member section (preferences-folded (window-preferences window))) t))
+  (folded-p section (window-preferences window)))
 
 (defun fold-section (window section &optional (folded-p t))
   "Fold SECTION of WINDOW, so that only its title is shown. If FOLDED-P is false, unfold SECTION."
@@ -252,6 +256,7 @@ and the robot, if the run has several robots."
     (world (world-title window))
     (transcript "Commands")
     (plan "Plan")
+    (parameters "Parameters")
     (t (display-title (pane-display (pane-named window section))))))
 
 (defmethod pane-appearance ((pane title-pane))
@@ -278,6 +283,7 @@ and the robot, if the run has several robots."
   (case (pane-section pane)
     (world "Click to choose a robot")
     (transcript "")
+    (parameters "Click to close this panel; the key P opens it again")
     (t "Click to fold this display or to unfold it")))
 
 (defmethod handle-click ((pane title-pane) button x y)

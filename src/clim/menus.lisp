@@ -50,6 +50,9 @@
         for items = (prompt-line-items group)
         when items collect (make-menu group items)))
 
+(defun robot-menu-items ()
+  (append (prompt-line-menus) '(nil ("Parameters ..." com-parameters))))
+
 (defparameter *menus*
   (list (make-menu "Run" '(("Pause" com-pause) ("Resume" com-resume) ("Step" com-step)
                            ("Back" com-back)
@@ -67,7 +70,7 @@
                             ("Colours on or off" com-color)
                             nil
                             ("All larger" com-larger) ("All smaller" com-smaller)))
-        (make-menu "Robot" #'prompt-line-menus)
+        (make-menu "Robot" #'robot-menu-items)
         (make-menu "Window" '(("Save as SVG" com-save-svg) ("Save as PNG" com-save-png)
                               nil
                               ("Keys and mouse" com-help) ("Close window" com-close))))

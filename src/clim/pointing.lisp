@@ -136,7 +136,7 @@ popup. OPENER is the command or menu that had opened the popup.")
   ;; A button opens its own panel at once, but only closes that if it is open.
   (:method ((pane bar-pane) button x y opener)
     (let ((pressed (subject-at (pane-subjects pane) x y)))
-      (when (and pressed (not (eq opener (button-command pressed))))
+      (when (and pressed (not (and (button-p pressed) (eq opener (button-command pressed)))))
         (dispatch-press pane button x y)))))
 
 (defun handle-press-closing-popup (pane button x y)

@@ -116,6 +116,15 @@ user code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per
                      :rate (chosen-rate simulation)
                      :reached (and (eq state :running) (measure-rate sample tick seconds))))))
 
+;;; Parameters.
+
+(defun parameter-values-in-force (simulation)
+  "Return a vector of the values of all parameters in SIMULATION, in the order of ALL-PARAMETERS."
+  (if (headless-p simulation)
+      (simulation-known-parameters simulation)
+      (cl:map 'vector (lambda (parameter) (global-value (parameter-symbol parameter)))
+              (all-parameters))))
+
 ;;;; Snapshots
 
 ;;; Three threads meet here. The thread that runs the ticks calls the observer, which makes a
@@ -158,6 +167,8 @@ quick. The function GONE is called with the reason when the watched run has been
   (unpaced-p nil :type boolean)
   ;; How time goes, and how it was found to go so far.
   (progress (make-progress) :type progress)
+  ;; The values of the parameters at the last look.
+  (parameters (parameter-values) :type vector)
   (sample (make-rate-sample) :type rate-sample)
   ;; What is known of the plans.
   (plans (make-plan-look) :type plan-look :read-only t)
@@ -222,6 +233,14 @@ itself, do nothing, because the next tick makes the snapshot."
           (setf (watcher-progress watcher) new)
           (funcall (watcher-news watcher)))))))
 
+(defun check-parameter-changes (watcher)
+  "Report to the window of WATCHER if parameters have changed since the last look."
+  (let ((simulation (watcher-simulation watcher)))
+    (when simulation
+      (let ((values (parameter-values-in-force simulation)))
+        (unless (every #'eql values (shiftf (watcher-parameters watcher) (copy-seq values)))
+          (funcall (watcher-news watcher)))))))
+
 (defun check-graphics-scale (watcher)
   (unless (eql graphics-scale* (shiftf (watcher-scale watcher) graphics-scale*))
     (funcall (watcher-news watcher))))
@@ -234,6 +253,7 @@ itself, do nothing, because the next tick makes the snapshot."
   "Check the run of WATCHER for changes that no observer reports."
   (check-plans watcher)
   (check-progress watcher)
+  (check-parameter-changes watcher)
   (check-graphics-scale watcher)
   (make-snapshot-if-changed watcher)
   (check-run-over watcher))

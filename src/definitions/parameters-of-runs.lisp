@@ -3,7 +3,7 @@
 (in-package :ars-magna.definitions)
 
 (export '(call-with-parameters call-with-parameter-values parameter-values digest-parameters
-          synchronize-parameters parameters-changed-since))
+          synchronize-parameters parameters-changed-since parameters-summary))
 
 ;; Much faster than PROGV for parameters defined before this is compiled, as all of ours are.
 (defmacro with-parameters-bound ((values) &body body)
@@ -48,6 +48,21 @@ end, store the parameters' values in VALUES. Return the values of FUNCTION."
   "Return a vector of the current values of all parameters, for SYNCHRONIZE-PARAMETERS."
   (map 'vector (lambda (parameter) (symbol-value (parameter-symbol parameter)))
        (registry-objects *parameters*)))
+
+(defun parameters-summary (values)
+  "Return a short text on how VALUES, a vector as PARAMETER-VALUES returns, differ from the defaults:
+default, clean (no noise), clean with other changes, or changed."
+  (flet ((count-different (kept-p value-of)
+           (loop for parameter in (registry-objects *parameters*)
+                 for value across values
+                 count (and (funcall kept-p parameter)
+                            (not (value-equal value (funcall value-of parameter))))))
+         (noise-p (parameter) (eq :noise (parameter-kind parameter))))
+    (let ((changed (count-different #'identity #'parameter-default))
+          (changed-others (count-different (complement #'noise-p) #'parameter-default)))
+      (cond ((zerop changed) "default")
+            ((plusp (count-different #'noise-p #'parameter-clean)) (format nil "~D changed" changed))
+            (t (format nil "clean~[~:;, ~:*~D other~:P changed~]" changed-others))))))
 
 (defun digest-parameters (known digest)
   "Add KNOWN, a vector as PARAMETER-VALUES returns, to DIGEST. Parameters without the mark :DIGESTED
