@@ -239,7 +239,7 @@
                  (:file "transcript") (:file "clipboard") (:file "transcript-pane")
                  (:file "prompt") (:file "rate-slider") (:file "bar") (:file "popup")
                  (:file "pointing")
-                 (:file "interactor") (:file "offers") (:file "plan-pane")
+                 (:file "suggestions") (:file "interactor") (:file "offers") (:file "plan-pane")
                  (:file "parameter-pane")
                  (:file "world-mouse") (:file "layout-pane") (:file "choosing")
                  (:file "keyboard")

@@ -4,7 +4,7 @@
 
 (in-suite clim)
 
-(defun places-at (width height &optional (preferences (window::make-preferences)))
+(defun places-at (width height &optional (preferences (preferences-with-displays-open)))
   "Return the places of all parts of a window in which each section wants 200 pixels."
   (window::compute-places preferences (constantly 200) width height))
 
@@ -68,12 +68,12 @@
              (declare (ignore left width))
              (+ top height)))
          (needs (section) (second (assoc section window::*initial-heights*))))
-    (let ((places (window::compute-places (window::make-preferences) #'needs 640 480)))
+    (let ((places (window::compute-places (preferences-with-displays-open) #'needs 640 480)))
       (is (= (bottom 'window::transcript places) (bottom 'window::plan-title places)))
       (loop for (section lines) in '((window::state 4) (window::cameras 3) (window::hands 1)
                                      (window::bins 1))
             do (is (<= (+ 6 (* 16 lines)) (fourth (place-of section places))))))
-    (let ((places (window::compute-places (window::make-preferences) #'needs 1280 900)))
+    (let ((places (window::compute-places (preferences-with-displays-open) #'needs 1280 900)))
       (is (<= (bottom 'window::plan-title places)
               (second (place-of 'window::low-splitter places)))))))
 

@@ -8,13 +8,19 @@
   (sb-ext:add-package-local-nickname :window :ars-magna.clim :ars-magna.tests)
   (sb-ext:add-package-local-nickname :client :ars-magna.window-client :ars-magna.tests))
 
+(defun preferences-with-displays-open ()
+  "Return preferences for a window whose displays are open, but for plans and parameters."
+  (window::make-preferences :folded '(window::plan window::parameters) :unseen '()))
+
 (defun call-with-window (function robot)
-  "Call FUNCTION with a window of ROBOT, adopted by the null port but not running."
+  "Call FUNCTION with a window of ROBOT, adopted by the null port but not running. Its displays are
+open, as if each had had something to show."
   (let* ((watcher (window::make-watcher (robot:robot-name robot) (constantly nil)))
          (port (clim:find-port :server-path '(:null)))
          (manager (clim:find-frame-manager :port port)))
     (window::watch-simulation watcher (run:robot-simulation robot))
     (let ((window (window::make-robot-window watcher :frame-manager manager)))
+      (setf (window::window-preferences window) (preferences-with-displays-open))
       (clim:adopt-frame manager window)
       (unwind-protect
            (let ((clim:*application-frame* window)) (funcall function window))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.cli)
 
+(export '(find-plan-named))
+
 ;;; Which plan is meant.
 
 (defun find-plan-named (name)

@@ -44,14 +44,16 @@
 (defstruct preferences
   "The user's preferences for a window. LAYERS are the layers of its display of the world. COLOR-P
 is true if this display has colours. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in pixels;
-NIL means a size that suits the window. FOLDED lists sections that show only their title.
+NIL means a size that suits the window. FOLDED lists sections that show only their title, and UNSEEN
+those of them that open by themselves when they have something to show.
 MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit the screen."
   (layers *window-layers* :type list)
   (color-p t)
   (details-width nil :type (or null real))
   (plan-width nil :type (or null real))
   (transcript-height nil :type (or null real))
-  (folded '(plan parameters) :type list)
+  (folded '(designators cameras hands bins plan parameters) :type list)
+  (unseen '(designators cameras hands bins plan) :type list)
   (magnification nil :type (or null (integer 1))))
 
 (defun title-pane-name (section)
@@ -105,8 +107,8 @@ wider if it shows plans or parameters, because these have long lines."
 
 (defun divide-height (needs height)
   "Return lists (section pixels) that divide HEIGHT among the sections of NEEDS, lists (section
-pixels). If HEIGHT is enough, each section gets what it needs, and the plan or the designators get
-the rest. Otherwise each gets a fair share."
+pixels). If HEIGHT is enough, each section gets what it needs, and the plan or the designators, if
+they are open, get the rest. Otherwise each gets a fair share."
   (cond ((null needs) '())
         ((<= (reduce #'+ needs :key #'second) height) (add-unused-height needs height))
         (t (divide-scarce-height needs height))))
@@ -152,10 +154,10 @@ lines go to the first sections, one each, and remaining pixels to the last."
           collect (list section (+ share extra)))))
 
 (defun add-unused-height (shares height)
-  "Return SHARES, lists (section pixels), with the unused pixels of HEIGHT added to one section."
+  "Return SHARES, lists (section pixels), with the unused pixels of HEIGHT added to the plan or else
+the designators. If neither is there, nobody gets them."
   (let ((rest (- height (reduce #'+ shares :key #'second)))
-        (receiver (or (find 'plan shares :key #'first) (find 'designators shares :key #'first)
-                      (first (last shares)))))
+        (receiver (or (find 'plan shares :key #'first) (find 'designators shares :key #'first))))
     (loop for share in shares
           collect (if (eq share receiver) (list (first share) (+ (second share) rest)) share))))
 

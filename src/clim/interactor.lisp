@@ -5,7 +5,11 @@
 ;;; The prompt edits the line (cli/editing); this pane only shows it. While a line runs, a row above
 ;;; says so; what is typed meanwhile is read after it.
 
-(defclass interactor-pane (display-pane) ()
+(defclass interactor-pane (display-pane)
+  (;; The lines to try that were not clicked yet, :UNKNOWN until the robot is known, and how many
+   ;; were clicked.
+   (suggestions :initform :unknown :accessor pane-suggestions)
+   (tried :initform 0 :accessor pane-tried))
   (:documentation "A pane that shows the input line and receives keys."))
 
 (defun focused-p (pane)
@@ -60,7 +64,41 @@ above it and its ink. Return NIL if PANE is empty."
                   (list (waiting-lines-label count) text point
                         (running-line-text "Running ~A" busy) :red))))))
 
+;;; Lines to try.
+
+(defun suggestions-wanted (pane)
+  "Return the suggestions that PANE shows if there is room: none after the user has entered a line
+other than a suggestion."
+  (let* ((window (window-of pane)) (robot (window-robot window)))
+    (when (and robot (eq :unknown (pane-suggestions pane)))
+      (setf (pane-suggestions pane) (suggestions-for (window-snapshot window) robot)))
+    (when (> (transcript-entered (window-transcript window)) (pane-tried pane))
+      (setf (pane-suggestions pane) '()))
+    (if (listp (pane-suggestions pane)) (pane-suggestions pane) '())))
+
+(defun suggestions-in-view (pane)
+  "Return those of the suggestions of PANE for which it has room above the input line."
+  (let ((room (- (nth-value 1 (columns-and-rows pane)) (rows-of-input pane)))
+        (suggestions (suggestions-wanted pane)))
+    (subseq suggestions 0 (clamp room 0 (length suggestions)))))
+
+(defun try-suggestion (pane suggestion)
+  (setf (pane-suggestions pane) (remove suggestion (pane-suggestions pane)))
+  (incf (pane-tried pane))
+  (run-line-at-prompt (window-conversation (window-of pane)) (suggestion-line suggestion)))
+
+(defun suggestion-at (pane y)
+  (nth (max 0 (floor (- y 2) +line-height+)) (suggestions-in-view pane)))
+
+(defmethod hover-text ((pane interactor-pane) x y)
+  (declare (ignore x))
+  (subject-description (suggestion-at pane y)))
+
 (defun needed-rows (pane)
+  (+ (length (suggestions-wanted pane)) (rows-of-input pane)))
+
+(defun rows-of-input (pane)
+  "Return the number of rows of the input line of PANE and the note above it."
   (destructuring-bind (&optional label (text "") (point 0) note &rest ink)
       (interactor-contents pane)
     (declare (ignore ink))
@@ -70,7 +108,8 @@ above it and its ink. Return NIL if PANE is empty."
                                                    (columns-and-rows pane) 1000)))))
 
 (defmethod pane-appearance ((pane interactor-pane))
-  (list (interactor-contents pane) (focused-p pane)))
+  (list (interactor-contents pane) (focused-p pane) (suggestions-in-view pane)
+        (multiple-value-list (pane-size pane))))
 
 ;;; Painting.
 
@@ -89,12 +128,30 @@ above it and its ink. Return NIL if PANE is empty."
             do (paint-glyphs-at-column canvas string 0 y nil))
       (paint-cursor canvas (+ top row) column (focused-p pane)))))
 
+(defun paint-suggestions (canvas pane suggestions)
+  "Paint a row for each of SUGGESTIONS. Return the number of rows."
+  (loop with label = "Try: "
+        with column = (+ 2 (length label)
+                         (loop for suggestion in suggestions
+                               maximize (length (suggestion-line suggestion))))
+        with columns = (columns-and-rows pane)
+        for suggestion in suggestions
+        for y from 14 by +line-height+
+        do (paint-glyphs-at-column canvas label 0 y :grey)
+           (paint-glyphs-at-column canvas (suggestion-line suggestion) (length label) y :blue)
+           (paint-glyphs-at-column canvas
+                                   (cut (suggestion-text suggestion) (max 4 (- columns column)))
+                                   column y :grey))
+  (length suggestions))
+
 (defmethod paint ((pane interactor-pane))
   (with-pane-canvas (canvas pane)
-    (destructuring-bind (&optional label text point note ink) (interactor-contents pane)
-      (when note
-        (paint-glyphs-at-column canvas (cut note (max 4 (columns-and-rows pane))) 0 14 ink))
-      (when label (paint-input-line canvas pane label text point (if note 1 0))))))
+    (let ((top (paint-suggestions canvas pane (suggestions-in-view pane))))
+      (destructuring-bind (&optional label text point note ink) (interactor-contents pane)
+        (when note
+          (paint-glyphs-at-column canvas (cut note (max 4 (columns-and-rows pane))) 0
+                                  (+ 14 (* top +line-height+)) ink))
+        (when label (paint-input-line canvas pane label text point (if note (1+ top) top)))))))
 
 ;;; Keys.
 
@@ -225,8 +282,10 @@ above it and its ink. Return NIL if PANE is empty."
   (repaint-if-changed pane))
 
 (defmethod handle-click ((pane interactor-pane) button x y)
-  (declare (ignore x y))
+  (declare (ignore x))
   (focus-and-repaint pane)
+  (when (and (eq button :left) (suggestion-at pane y))
+    (try-suggestion pane (suggestion-at pane y)))
   (when (eq button :middle)
     (with-guarded-command ((window-of pane) "Pasting") (paste-text (window-of pane) :primary))))
 

@@ -180,6 +180,35 @@ least height of the designators.")
                 (remove section (preferences-folded preferences)))))
     (rearrange window)))
 
+;;; A section that has nothing to show at the start is folded. It opens by itself once, unless the
+;;; user has folded or unfolded it before.
+
+(defun section-has-contents-p (window section)
+  "True if SECTION of WINDOW has more to show than that there is nothing."
+  (let ((robot (window-robot window)))
+    (ecase section
+      (designators (robot-image-designators robot))
+      (cameras (some (lambda (camera)
+                       (or (camera-image-view camera) (camera-image-track camera)
+                           (camera-image-location camera)))
+                     (robot-image-cameras robot)))
+      (hands (some (lambda (hand) (or (hand-image-contents hand) (hand-image-location hand)))
+                   (robot-image-hands robot)))
+      (bins (some #'bin-image-contents (robot-image-bins robot)))
+      (plan (plan-running-p (plan-look-simulation (plan-look-of (pane-named window 'plan))))))))
+
+(defun mark-section-seen (window section)
+  (let ((preferences (window-preferences window)))
+    (setf (preferences-unseen preferences) (remove section (preferences-unseen preferences)))))
+
+(defun open-sections-with-contents (window)
+  "Unfold the sections of WINDOW that have something to show for the first time."
+  (when (window-robot window)
+    (dolist (section (preferences-unseen (window-preferences window)))
+      (when (section-has-contents-p window section)
+        (mark-section-seen window section)
+        (fold-section window section nil)))))
+
 ;;; Bars between parts of the window that can be dragged.
 
 (defclass splitter-pane (display-pane) ()
@@ -284,12 +313,15 @@ and the robot, if the run has several robots."
     (world "Click to choose a robot")
     (transcript "")
     (parameters "Click to close this panel; the key P opens it again")
-    (t "Click to fold this display or to unfold it")))
+    (t (if (member (pane-section pane) (preferences-unseen (window-preferences (window-of pane))))
+           "Nothing to show yet: this display opens by itself. Click to open it now"
+           "Click to fold this display or to unfold it"))))
 
 (defmethod handle-click ((pane title-pane) button x y)
   (declare (ignore button))
   (let ((window (window-of pane)) (section (pane-section pane)))
     (cond ((section-foldable-p section)
+           (mark-section-seen window section)
            (fold-section window section (not (section-folded-p window section))))
           ((eq section 'world)
            (multiple-value-bind (x y) (position-in-parent pane x y)

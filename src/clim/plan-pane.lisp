@@ -84,17 +84,20 @@
         (draw-plan-text canvas pane (+ y 4) (format nil "Last: ~A." (string-right-trim "." ended)))
         y)))
 
+(defun plan-running-p (simulation)
+  (let ((interface (plan-interface-of simulation)))
+    (and interface (plan-runner-tasks (interface-runner interface)))))
+
 (defun draw-no-plan-text (canvas pane)
-  (let ((interface (plan-interface-of (plan-look-simulation (plan-look-of pane)))))
-    ;; There may be running plans that have not been looked at yet.
-    (if (and interface (plan-runner-tasks (interface-runner interface)))
-        (draw-plan-text canvas pane +plan-buttons-height+ "Looking at the plans ...")
-        (let ((y (draw-plan-text canvas pane +plan-buttons-height+
-                                 "No plan is running. The line PLAN name ... starts a plan.")))
-          (draw-plan-ending canvas pane
-                            (draw-plan-lines
-                             canvas y (prompt-line-button pane "List the plans" "plan"
-                                                          "List plans that can be started")))))))
+  ;; There may be running plans that have not been looked at yet.
+  (if (plan-running-p (plan-look-simulation (plan-look-of pane)))
+      (draw-plan-text canvas pane +plan-buttons-height+ "Looking at the plans ...")
+      (let ((y (draw-plan-text canvas pane +plan-buttons-height+
+                               "No plan is running. The line PLAN name ... starts a plan.")))
+        (draw-plan-ending canvas pane
+                          (draw-plan-lines
+                           canvas y (prompt-line-button pane "List the plans" "plan"
+                                                        "List plans that can be started"))))))
 
 ;;; Painting.
 

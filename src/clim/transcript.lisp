@@ -119,13 +119,15 @@ change."
        (setf (first (transcript-lines transcript)) "")))))
 
 (defun set-initial-lines (transcript lines)
-  "Make LINES, newest first, the lines of TRANSCRIPT, which has not been shown yet."
+  "Make LINES, newest first, the lines of TRANSCRIPT, which has not been shown yet. The user has
+entered at least one of them."
   (call-changing-transcript
    transcript
    (lambda ()
      (setf (transcript-lines transcript) lines
            (transcript-count transcript) (length lines)
-           (transcript-newest transcript) (1- (length lines))))))
+           (transcript-newest transcript) (1- (length lines))
+           (transcript-entered transcript) 1))))
 
 (defun clear-transcript (transcript)
   (call-changing-transcript

@@ -152,6 +152,7 @@ frames, and :usual-magnification."
                             (shown-robot-name window))
     (restart-pacer-if-lost (window-watcher window))
     (restart-event-thread (clim:port window))
+    (open-sections-with-contents window)
     (if (shiftf (painting-erased-p (window-painting window)) nil)
         (repaint-all window)
         (mapc #'repaint-if-changed (display-panes window)))

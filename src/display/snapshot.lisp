@@ -57,11 +57,11 @@
   "The image of a camera: all that pictures show of the camera at one moment."
   (index 0 t "the number of the camera" :export)
   (angle 0d0 t "the angle of the camera relative to the robot, in radians")
-  (field-of-view 1d0 t)
-  (view '() t "the camera's last view")
+  (field-of-view 1d0 t "the camera's field of view, in radians" :export)
+  (view '() t "the camera's last view" :export)
   (view-age 0 t "the age of the last view, in ticks")
   (track nil t "the image of the designator that the camera tracks, or NIL" :export)
-  (location nil t)
+  (location nil t "the camera's container: the image of a thing, a string, or NIL" :export)
   (look nil t))
 
 (define-record hand-image

@@ -1,0 +1,97 @@
+;;;; suggestions.lisp -- lines to try in a new window, above its input line.
+
+(in-package :ars-magna.clim)
+
+;;; They fit the world that is shown: a place that is free, a camera that the robot has, a plan that
+;;; is loaded. They are shown until the user has entered a line of his own.
+
+(defstruct (suggestion (:constructor make-suggestion (line text)) (:copier nil))
+  "A LINE of the prompt to try, and a TEXT on what it does."
+  (line "" :type string :read-only t)
+  (text "" :type string :read-only t))
+
+(defconstant +suggestion-count+ 3 "The number of lines to suggest.")
+
+(defmethod subject-title ((suggestion suggestion))
+  (format nil "Click to run the line ~A: ~A" (suggestion-line suggestion)
+          (suggestion-text suggestion)))
+
+;;; Places that can be reached on a straight line.
+
+(defun open-square-p (map x y)
+  "True if the point X, Y of MAP is in a free cell and all cells around that are free."
+  (loop for dx from -1 to 1
+        always (loop for dy from -1 to 1
+                     always (and (map-index map (+ x dx) (+ y dy))
+                                 (not (cell-filled? (map-cell map (+ x dx) (+ y dy))))))))
+
+(defun thing-near-p (snapshot x y)
+  (find-if (lambda (image)
+             (< (max (abs (- x (thing-image-x image))) (abs (- y (thing-image-y image)))) 1))
+           (snapshot-things snapshot)))
+
+(defun clear-line-p (snapshot from-x from-y to-x to-y)
+  "True if neither walls nor things of SNAPSHOT are near the line from FROM-X, FROM-Y to TO-X, TO-Y,
+apart from its beginning."
+  (loop for step from 1 to 20
+        for share = (/ step 20)
+        for x = (+ from-x (* share (- to-x from-x)))
+        for y = (+ from-y (* share (- to-y from-y)))
+        always (and (open-square-p (snapshot-map snapshot) x y)
+                    (or (< share 1/2) (not (thing-near-p snapshot x y))))))
+
+(defun reachable-places (snapshot robot)
+  "Return places (x y) of SNAPSHOT on straight lines that are clear for ROBOT, the far ones first."
+  (let ((from-x (robot-image-x robot)) (from-y (robot-image-y robot)))
+    (loop for distance in '(8 6 5 4 3 2)
+          append (loop for eighth in '(0 1 -1 2 -2 3 -3 4)
+                       for (x y) = (mapcar (lambda (number) (/ (round number 1/2) 2))
+                                           (point-at-distance from-x from-y
+                                                              (+ (robot-image-angle robot)
+                                                                 (* eighth pi 1/4))
+                                                              distance))
+                       when (clear-line-p snapshot from-x from-y x y) collect (list x y)))))
+
+;;; The suggestions.
+
+(defun place-text (place) (format nil "~{~A~^ ~}" (mapcar #'number-text place)))
+
+(defun suggested-drives (places)
+  (when places
+    (list (make-suggestion (format nil "go-to ~A" (place-text (first places)))
+                           "the robot drives to this place"))))
+
+(defun widest-camera-image (robot)
+  "Return the image of the camera of ROBOT with the widest field of view, or NIL."
+  (first (sort (copy-list (robot-image-cameras robot)) #'> :key #'camera-image-field-of-view)))
+
+(defun suggested-looks (snapshot robot)
+  (let ((camera (widest-camera-image robot)))
+    (when camera
+      (list (if (plusp (length (snapshot-things snapshot)))
+                (make-suggestion (format nil "all-obj-desig ~D non-local ()"
+                                         (camera-image-index camera))
+                                 "the robot looks for things with a camera")
+                (make-suggestion (format nil "cam-view ~D" (camera-image-index camera))
+                                 "the robot takes a view with a camera"))))))
+
+(defun suggested-plans (places robot)
+  "Return a list of a suggestion to visit some of PLACES by a shipped plan. The list is empty if the
+plan is not loaded, or ROBOT has no camera, which the plan needs."
+  (when (and (rest places)
+             (robot-image-cameras robot)
+             (ars-magna.cli:find-plan-named "PATROL-PLACES"))
+    (list (make-suggestion (format nil "plan patrol-places ((~A) (~A))"
+                                   (place-text (second places)) (place-text (first places)))
+                           "a plan visits two places"))))
+
+(defun suggestions-for (snapshot robot)
+  "Return +SUGGESTION-COUNT+ suggestions for ROBOT in SNAPSHOT."
+  (let* ((places (reachable-places snapshot robot))
+         (all (append (suggested-drives places)
+                      (suggested-looks snapshot robot)
+                      (suggested-plans places robot)
+                      (list (make-suggestion "about-face" "the robot turns about")
+                            (make-suggestion "status" "what the robot is doing")
+                            (make-suggestion "map" "the world as text")))))
+    (subseq all 0 +suggestion-count+)))
