@@ -279,7 +279,8 @@
                              (:file "clim-talking") (:file "clim-going-on")
                              (:file "clim-awaiting")
                              (:file "clim-x-server") (:file "clim-magnification")
-                             (:file "clim-clipboard") (:file "clim-keyboard")))))
+                             (:file "clim-clipboard") (:file "clim-keyboard")
+                             (:file "clim-controls")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."

@@ -88,7 +88,7 @@
       (is (equal '(nil nil t nil) (whole 28))))))
 
 (test layout.plans-have-a-column-where-there-is-room
-  (let ((preferences (window::make-preferences :folded '())))
+  (let ((preferences (window::make-preferences :folded '(window::parameters))))
     (flet ((plan-left (width) (first (place-of 'window::plan (places-at width 1080 preferences))))
            (state-left (width)
              (first (place-of 'window::state (places-at width 1080 preferences)))))
@@ -96,14 +96,15 @@
       (is (< (plan-left 1920) (state-left 1920))))))
 
 (test layout.the-column-of-plans-can-be-made-larger
-  (let ((preferences (window::make-preferences :folded '() :plan-width 700)))
+  (let ((preferences (window::make-preferences :folded '(window::parameters) :plan-width 700)))
     (is (= 700 (third (place-of 'window::plan (places-at 1920 1080 preferences)))))
-    (let ((places (places-at 1500 900 (window::make-preferences :folded '() :plan-width 5000))))
+    (let ((places (places-at 1500 900 (window::make-preferences
+                                       :folded '(window::parameters) :plan-width 5000))))
       (is (every (lambda (place) (inside-p place 1500 900)) (mapcar #'rest places)))
       (is (<= 120 (third (place-of 'window::world places)))))))
 
 (test layout.a-plan-can-be-read-at-640-by-480
-  (let ((places (places-at 640 480 (window::make-preferences :folded '()))))
+  (let ((places (places-at 640 480 (window::make-preferences :folded '(window::parameters)))))
     (destructuring-bind (left top width height) (place-of 'window::plan places)
       (declare (ignore left top))
       (is (<= 280 width))

@@ -14,7 +14,7 @@
 
 (defun call-with-window (function robot)
   "Call FUNCTION with a window of ROBOT, adopted by the null port but not running. Its displays are
-open, as if each had had something to show."
+open, as if each had had something to show; it suggests no lines to try."
   (let* ((watcher (window::make-watcher (robot:robot-name robot) (constantly nil)))
          (port (clim:find-port :server-path '(:null)))
          (manager (clim:find-frame-manager :port port)))
@@ -22,6 +22,7 @@ open, as if each had had something to show."
     (let ((window (window::make-robot-window watcher :frame-manager manager)))
       (setf (window::window-preferences window) (preferences-with-displays-open))
       (clim:adopt-frame manager window)
+      (setf (window::pane-suggestions (pane window 'window::interactor)) '())
       (unwind-protect
            (let ((clim:*application-frame* window)) (funcall function window))
         (window::stop-watching watcher)

@@ -109,7 +109,9 @@
 (test screen.what-went-leaves-nothing-behind
   "Designators that have gone are not to be seen any more."
   (in-x-window (window robot)
-    (inside (window) (lay-out window 1180 820))
+    (inside (window)
+      (window::fold-section window 'window::designators nil)
+      (lay-out window 1180 820))
     (flet ((look ()
              (time:asking (robot)
                (window::publish-snapshot (window::window-watcher window) (time:current-simulation)))

@@ -16,32 +16,36 @@
   (format nil "Click to run the line ~A: ~A" (suggestion-line suggestion)
           (suggestion-text suggestion)))
 
-;;; Places that can be reached on a straight line.
+;;; Straight lines.
 
-(defun open-square-p (map x y)
-  "True if the point X, Y of MAP is in a free cell and all cells around that are free."
+(defun points-on-line (from-x from-y to-x to-y)
+  "Return points (x y) after FROM-X, FROM-Y on the line to TO-X, TO-Y. The last one is TO-X, TO-Y."
+  (loop for step from 1 to 20
+        for share = (/ step 20)
+        collect (list (+ from-x (* share (- to-x from-x))) (+ from-y (* share (- to-y from-y))))))
+
+(defun free-cell-p (map x y)
+  (and (map-index map x y) (not (cell-filled? (map-cell map x y)))))
+
+(defun free-square-p (map x y)
+  "True if the cell of MAP at X, Y and all cells around it are free."
   (loop for dx from -1 to 1
-        always (loop for dy from -1 to 1
-                     always (and (map-index map (+ x dx) (+ y dy))
-                                 (not (cell-filled? (map-cell map (+ x dx) (+ y dy))))))))
+        always (loop for dy from -1 to 1 always (free-cell-p map (+ x dx) (+ y dy)))))
 
 (defun thing-near-p (snapshot x y)
   (find-if (lambda (image)
              (< (max (abs (- x (thing-image-x image))) (abs (- y (thing-image-y image)))) 1))
            (snapshot-things snapshot)))
 
-(defun clear-line-p (snapshot from-x from-y to-x to-y)
-  "True if neither walls nor things of SNAPSHOT are near the line from FROM-X, FROM-Y to TO-X, TO-Y,
-apart from its beginning."
-  (loop for step from 1 to 20
-        for share = (/ step 20)
-        for x = (+ from-x (* share (- to-x from-x)))
-        for y = (+ from-y (* share (- to-y from-y)))
-        always (and (open-square-p (snapshot-map snapshot) x y)
-                    (or (< share 1/2) (not (thing-near-p snapshot x y))))))
+(defun drivable-line-p (snapshot from-x from-y to-x to-y)
+  "True if no walls of SNAPSHOT are near the line from FROM-X, FROM-Y to TO-X, TO-Y, and no things
+near its second half, because the robot may start beside things."
+  (let ((points (points-on-line from-x from-y to-x to-y)))
+    (and (loop for (x y) in points always (free-square-p (snapshot-map snapshot) x y))
+         (loop for (x y) in (last points 10) never (thing-near-p snapshot x y)))))
 
 (defun reachable-places (snapshot robot)
-  "Return places (x y) of SNAPSHOT on straight lines that are clear for ROBOT, the far ones first."
+  "Return places (x y) of SNAPSHOT to which ROBOT can drive straight, the far ones first."
   (let ((from-x (robot-image-x robot)) (from-y (robot-image-y robot)))
     (loop for distance in '(8 6 5 4 3 2)
           append (loop for eighth in '(0 1 -1 2 -2 3 -3 4)
@@ -50,7 +54,7 @@ apart from its beginning."
                                                               (+ (robot-image-angle robot)
                                                                  (* eighth pi 1/4))
                                                               distance))
-                       when (clear-line-p snapshot from-x from-y x y) collect (list x y)))))
+                       when (drivable-line-p snapshot from-x from-y x y) collect (list x y)))))
 
 ;;; The suggestions.
 
@@ -65,10 +69,22 @@ apart from its beginning."
   "Return the image of the camera of ROBOT with the widest field of view, or NIL."
   (first (sort (copy-list (robot-image-cameras robot)) #'> :key #'camera-image-field-of-view)))
 
+(defun visible-thing-p (snapshot robot camera image)
+  "True if ROBOT can see the thing of IMAGE in SNAPSHOT with CAMERA, not at the edge of its view."
+  (let* ((dx (- (thing-image-x image) (robot-image-x robot)))
+         (dy (- (thing-image-y image) (robot-image-y robot)))
+         (angle (- (atan dy dx) (robot-image-angle robot) (camera-image-angle camera))))
+    (and (< 1 (abs (complex dx dy)) 12)
+         (> (cos angle) (cos (* 2/5 (camera-image-field-of-view camera))))
+         (loop for (x y) in (points-on-line (robot-image-x robot) (robot-image-y robot)
+                                            (thing-image-x image) (thing-image-y image))
+               always (free-cell-p (snapshot-map snapshot) x y)))))
+
 (defun suggested-looks (snapshot robot)
   (let ((camera (widest-camera-image robot)))
     (when camera
-      (list (if (plusp (length (snapshot-things snapshot)))
+      (list (if (some (lambda (image) (visible-thing-p snapshot robot camera image))
+                      (snapshot-things snapshot))
                 (make-suggestion (format nil "all-obj-desig ~D non-local ()"
                                          (camera-image-index camera))
                                  "the robot looks for things with a camera")
@@ -88,8 +104,8 @@ plan is not loaded, or ROBOT has no camera, which the plan needs."
 (defun suggestions-for (snapshot robot)
   "Return +SUGGESTION-COUNT+ suggestions for ROBOT in SNAPSHOT."
   (let* ((places (reachable-places snapshot robot))
-         (all (append (suggested-drives places)
-                      (suggested-looks snapshot robot)
+         (all (append (suggested-looks snapshot robot)
+                      (suggested-drives places)
                       (suggested-plans places robot)
                       (list (make-suggestion "about-face" "the robot turns about")
                             (make-suggestion "status" "what the robot is doing")

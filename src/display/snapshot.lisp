@@ -56,7 +56,7 @@
 (define-record camera-image
   "The image of a camera: all that pictures show of the camera at one moment."
   (index 0 t "the number of the camera" :export)
-  (angle 0d0 t "the angle of the camera relative to the robot, in radians")
+  (angle 0d0 t "the angle of the camera relative to the robot, in radians" :export)
   (field-of-view 1d0 t "the camera's field of view, in radians" :export)
   (view '() t "the camera's last view" :export)
   (view-age 0 t "the age of the last view, in ticks")
