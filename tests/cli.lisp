@@ -288,6 +288,16 @@ of lines, and the number of errors."
   (is (= 1 base:max-speed*) "a headless prompt sets its own parameters")
   (is-true (has-words-p (joined (type-batch "params")) "Hands" "bin-delay*")))
 
+(test params.sets-all-at-once
+  (flet ((last-of (&rest lines) (first (last (apply #'type-batch lines)))))
+    (is (equal "The parameters are now: default." (last-of "params braking 3" "params default")))
+    (is (equal "The parameters are now: clean." (last-of "params clean")))
+    (is (equal "The parameters are now: clean, 1 other changed."
+               (last-of "params motion-noise .5" "params braking 3" "params CLEAN")))
+    (is-true (has-words-p (last-of "params clean" "(print motion-noise*)") "0"))
+    (is-true (has-words-p (last-of "params default" "(print motion-noise*)") "0.1")))
+  (is-true (has-words-p (complaint "params clean 3") "PARAMS CLEAN takes no value")))
+
 (test pos-and-angle.put-the-robot-there
   (let ((status (type-batch "pos 3.5 4" "angle 1.25" "status")))
     (is (string= "Position:          (3.50,4.00)" (first status)))

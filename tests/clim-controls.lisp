@@ -164,7 +164,7 @@
     (let ((pane (open-panel window 1180 820)))
       (click-in-panel pane (row-named-p "max-turn-angle*"))
       (is (equal (format nil "params max-turn-angle* ~F" (/ pi 8))
-                 (second (third (keys-handed window)))))
+                 (second (first (last (keys-handed window))))))
       (is (null (lines-given window))))))
 
 (test parameters.steps-suit-the-default-and-stop-at-the-limits
@@ -296,6 +296,7 @@ number of errors."
   (call-with-window
    (lambda (window)
      (setf (window::window-preferences window) (window::make-preferences)
+           (window::transcript-entered (window::window-transcript window)) 0
            (window::pane-suggestions (pane window 'window::interactor)) :unknown)
      (lay-out window 640 480)
      (funcall function window))

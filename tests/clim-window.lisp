@@ -20,9 +20,9 @@ open, as if each had had something to show; it suggests no lines to try."
          (manager (clim:find-frame-manager :port port)))
     (window::watch-simulation watcher (run:robot-simulation robot))
     (let ((window (window::make-robot-window watcher :frame-manager manager)))
-      (setf (window::window-preferences window) (preferences-with-displays-open))
+      (setf (window::window-preferences window) (preferences-with-displays-open)
+            (window::transcript-entered (window::window-transcript window)) 1)
       (clim:adopt-frame manager window)
-      (setf (window::pane-suggestions (pane window 'window::interactor)) '())
       (unwind-protect
            (let ((clim:*application-frame* window)) (funcall function window))
         (window::stop-watching watcher)

@@ -140,10 +140,10 @@ the present value. The second value is true if a line that sets it still waits."
                             "Set all parameters to the manual's defaults: the line params default")))
 
 (defun scope-text (simulation)
-  "Return a text on what changes of parameters in SIMULATION apply to."
+  "Return a text on the runs that changes of parameters in SIMULATION affect."
   (if (headless-p simulation)
-      "Changes apply to this run only."
-      "Changes apply to live runs and new runs."))
+      "Changes affect this run only."
+      "Changes affect live and new runs."))
 
 ;;; Painting.
 
