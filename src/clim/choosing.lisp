@@ -28,9 +28,9 @@
 (defgeneric keys-hint (pane)
   (:documentation "Return a text for the status strip on the keys that PANE takes.")
   (:method ((pane display-pane))
-    "Arrows up and down scroll, left folds; N and P choose; M opens a menu; Tab goes on.")
+    "Arrows up and down scroll, left folds; > and < choose; M opens a menu; Tab goes on.")
   (:method ((pane world-pane))
-    "Arrows move the view; N and P choose a thing or robot; M opens a menu; Tab goes on.")
+    "Arrows move the view; > and < choose a thing or robot; M opens a menu; Tab goes on.")
   (:method ((pane title-pane)) "Arrow right unfolds this display; Tab goes on.")
   (:method ((pane splitter-pane)) "Arrows move this bar; Tab goes on.")
   (:method ((pane interactor-pane)) ""))
@@ -161,15 +161,15 @@ box LEFT ... BOTTOM. Keys choose objects in the order of these numbers.")
 
 (defun open-menu-by-key (pane)
   "Open the context menu of the object that is chosen or selected in PANE. The keys choose a row."
-  (destructuring-bind (&optional subject left top right bottom)
-      (or (chosen-box pane) (selected-box pane))
-    (cond ((null subject)
-           (show-hint (window-of pane) "Nothing is chosen here. N and P choose an object."))
-          ((typep subject 'button) (click-chosen pane))
-          (t (open-offers-at pane
-                             (subjects-for-menu pane subject (round (+ left right) 2)
-                                                (round (+ top bottom) 2))
-                             (round left) (round bottom))
+  (let ((box (or (chosen-box pane) (selected-box pane))))
+    (cond ((null box)
+           (show-hint (window-of pane) "Nothing is chosen here. The keys > and < choose an object."))
+          ((typep (first box) 'button) (click-chosen pane))
+          (t (destructuring-bind (subject left top right bottom) box
+               (open-offers-at pane
+                               (subjects-for-menu pane subject (round (+ left right) 2)
+                                                  (round (+ top bottom) 2))
+                               (round left) (round bottom)))
              (highlight-further-row (window-popup (window-of pane)) 1)))))
 
 (defun click-chosen (pane)
