@@ -259,8 +259,8 @@
                                                                       (robot:robot-name robot))))))
 
 (defun run-suggestions (name seed)
-  "Type the lines suggested for the robot called NAME. Return the lines, the ticks, the output and the
-number of errors."
+  "Type the lines suggested for the robot called NAME. Return the lines, the ticks, the output and
+the number of errors."
   (run:call-with-simulation
    (lambda ()
      (let ((lines (suggestions-now (first (run:simulation-robots)))))

@@ -102,6 +102,7 @@ while the simulator is idle: nothing moves by itself in its world, and no comman
 ;;; Parameters.
 
 (defun parameter-value-text (value)
+  "Return VALUE of a parameter as text, a number of usual size with at most four decimals."
   (if (and (realp value) (or (zerop value) (<= 1d-3 (abs value) 1d6)))
       (plain-number-text value)
       (princ-to-string value)))

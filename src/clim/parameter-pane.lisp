@@ -137,7 +137,7 @@ the present value. The second value is true if a line that sets it still waits."
 (defun set-all-buttons (pane)
   (list (prompt-line-button pane "Clean" "params clean" "Remove all noise: the line params clean")
         (prompt-line-button pane "Default" "params default"
-                            "Set all parameters to the manual's defaults: the line params default")))
+                            "Give all parameters their defaults: the line params default")))
 
 (defun scope-text (simulation)
   "Return a text on the runs that changes of parameters in SIMULATION affect."
@@ -215,7 +215,8 @@ the present value. The second value is true if a line that sets it still waits."
 ;;; The mouse.
 
 (defun panel-subject-at (pane x y)
-  "Return the button or row that PANE shows exactly at X, Y, or NIL, because rows are close together."
+  "Return the button or row that PANE shows at X, Y, or NIL. Rows are so close together that X, Y
+must be inside."
   (subject-at (remove-if-not (lambda (box)
                                (destructuring-bind (left top right bottom) box
                                  (and (<= left x right) (<= top y) (< y bottom))))

@@ -32,9 +32,10 @@
   "Return how far from the left end of a track WIDTH pixels wide RATE is, in pixels."
   (if (eq rate :free)
       width
-      (round (* (- width +gap-before-free+)
-                (log (/ (clamp rate +lowest-rate+ +highest-rate+) +lowest-rate+)
-                     (/ +highest-rate+ +lowest-rate+))))))
+      (flet ((height (rate) (logarithm (/ rate +lowest-rate+))))
+        (round (* (- width +gap-before-free+)
+                  (/ (height (clamp rate +lowest-rate+ +highest-rate+))
+                     (height +highest-rate+)))))))
 
 (defun rate-at-track-offset (offset width)
   "Return the rate OFFSET pixels from the left end of a track WIDTH pixels wide."

@@ -73,9 +73,9 @@ near its second half, because the robot may start beside things."
   "True if ROBOT can see the thing of IMAGE in SNAPSHOT with CAMERA, not at the edge of its view."
   (let* ((dx (- (thing-image-x image) (robot-image-x robot)))
          (dy (- (thing-image-y image) (robot-image-y robot)))
-         (angle (- (atan dy dx) (robot-image-angle robot) (camera-image-angle camera))))
-    (and (< 1 (abs (complex dx dy)) 12)
-         (> (cos angle) (cos (* 2/5 (camera-image-field-of-view camera))))
+         (angle (- (arctangent dy dx) (robot-image-angle robot) (camera-image-angle camera))))
+    (and (< 1 (+ (* dx dx) (* dy dy)) 144)
+         (> (cosine angle) (cosine (* 2/5 (camera-image-field-of-view camera))))
          (loop for (x y) in (points-on-line (robot-image-x robot) (robot-image-y robot)
                                             (thing-image-x image) (thing-image-y image))
                always (free-cell-p (snapshot-map snapshot) x y)))))

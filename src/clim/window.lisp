@@ -10,7 +10,8 @@
   `((world world-pane) (state detail-pane :display :state)
     (designators designators-pane :display :designators) (cameras detail-pane :display :cameras)
     (hands detail-pane :display :hands) (bins detail-pane :display :bins) (plan plan-pane)
-    (parameters parameter-pane) (transcript transcript-pane) (interactor interactor-pane) (strip strip-pane) (bar bar-pane)
+    (parameters parameter-pane)
+    (transcript transcript-pane) (interactor interactor-pane) (strip strip-pane) (bar bar-pane)
     (menus menu-pane)
     ,@(loop for section in +titled+
             collect (list (title-pane-name section) 'title-pane :section section))

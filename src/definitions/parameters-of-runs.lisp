@@ -50,8 +50,8 @@ end, store the parameters' values in VALUES. Return the values of FUNCTION."
        (registry-objects *parameters*)))
 
 (defun parameters-summary (values)
-  "Return a short text on how VALUES, a vector as PARAMETER-VALUES returns, differ from the defaults:
-default, clean (no noise), clean with other changes, or changed."
+  "Return a short text on how VALUES, a vector as PARAMETER-VALUES returns, differ from the
+defaults: \"default\", \"clean\" (no noise), \"clean, 2 others changed\" or \"3 changed\"."
   (flet ((count-different (kept-p value-of)
            (loop for parameter in (registry-objects *parameters*)
                  for value across values
@@ -61,8 +61,9 @@ default, clean (no noise), clean with other changes, or changed."
     (let ((changed (count-different #'identity #'parameter-default))
           (changed-others (count-different (complement #'noise-p) #'parameter-default)))
       (cond ((zerop changed) "default")
-            ((plusp (count-different #'noise-p #'parameter-clean)) (format nil "~D changed" changed))
-            (t (format nil "clean~[~:;, ~:*~D other~:P changed~]" changed-others))))))
+            ((zerop (count-different #'noise-p #'parameter-clean))
+             (format nil "clean~[~:;, ~:*~D other~:P changed~]" changed-others))
+            (t (format nil "~D changed" changed))))))
 
 (defun digest-parameters (known digest)
   "Add KNOWN, a vector as PARAMETER-VALUES returns, to DIGEST. Parameters without the mark :DIGESTED
