@@ -142,15 +142,19 @@
                (is (not (window::pane-shown-p pane)))
                (is (not (window::pane-shown-p (pane window 'window::parameters-title))))))))
 
+(test parameters.the-panel-has-more-room-than-the-plan
+  (in-window (window robot)
+    (window::fold-section window 'window::plan nil)
+    (let ((height (nth-value 1 (window::pane-size (open-panel window 1180 820)))))
+      (is (<= 200 height))
+      (is (<= (nth-value 1 (window::pane-size (pane window 'window::plan))) height)))))
+
 (test parameters.the-panel-has-all-of-the-chapter
   (in-window (window robot)
     (let ((rows (window::parameter-rows (open-panel window 1180 820))))
       (is (= (length (definitions:all-parameters)) (count-if-not #'stringp rows)))
       (is (equal '("Robot movement" "Cameras" "Sensor error" "Hands" "Storage bins" "Time")
                  (remove-if-not #'stringp rows))))))
-
-(defmacro with-parameters-kept (() &body body)
-  `(definitions:call-with-parameters '() (lambda () ,@body)))
 
 (test parameters.a-step-is-a-line
   (in-window (window robot)

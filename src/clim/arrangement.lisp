@@ -33,9 +33,10 @@
   :test #'equal
   :documentation "The parts of the window that have titles.")
 
-(define-constant +greedy-sections+ '(plan parameters)
+(define-constant +greedy-sections+ '(parameters plan)
   :test #'equal
-  :documentation "The sections that need more height than there is, and get half of it or more.")
+  :documentation "The sections that mostly need more height than there is. The first that is open
+gets half of the height or more.")
 
 (define-constant +splitters+ '(side-splitter plan-splitter low-splitter)
   :test #'equal
@@ -116,7 +117,7 @@ they are open, get the rest. Otherwise each gets a fair share."
 (defun divide-scarce-height (needs height)
   "Divide HEIGHT, which is less than NEEDS. The first of the greedy sections gets what it needs, up
 to half of HEIGHT, or more if the others leave more. The others get fair shares."
-  (let* ((greedy (find-if (lambda (need) (member (first need) +greedy-sections+)) needs))
+  (let* ((greedy (some (lambda (section) (find section needs :key #'first)) +greedy-sections+))
          (others (remove greedy needs)))
     (if (and greedy others)
         (let ((share (min (second greedy)

@@ -204,7 +204,9 @@ the present value. The second value is true if a line that sets it still waits."
         (with-origin (canvas 0 (- (pane-offset pane)))
           (loop for row in (parameter-rows pane)
                 for y from +panel-head-height+ by +line-height+
-                do (draw-panel-row canvas pane row y))))
+                ;; A row that is partly below the pane would be buttons without a text.
+                when (<= (- (+ y +line-height+) (pane-offset pane)) height)
+                  do (draw-panel-row canvas pane row y))))
       (draw-panel-head canvas pane))
     (setf (pane-extent pane) (panel-height pane))))
 
