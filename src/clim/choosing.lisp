@@ -159,18 +159,20 @@ box LEFT ... BOTTOM. Keys choose objects in the order of these numbers.")
     (let ((tick (tick-at-mouse pane x y)))
       (list (if tick (make-timeline-point tick subject) subject)))))
 
+(defun open-menu-of-box (pane subject left top right bottom)
+  "Open the context menu of SUBJECT, which PANE shows in the box LEFT ... BOTTOM, for keys."
+  (open-offers-at pane (subjects-for-menu pane subject (round (+ left right) 2)
+                                          (round (+ top bottom) 2))
+                  (round left) (round bottom))
+  (highlight-further-row (window-popup (window-of pane)) 1))
+
 (defun open-menu-by-key (pane)
-  "Open the context menu of the object that is chosen or selected in PANE. The keys choose a row."
+  "Open the context menu of the object that is chosen or selected in PANE. Press a chosen button."
   (let ((box (or (chosen-box pane) (selected-box pane))))
     (cond ((null box)
            (show-hint (window-of pane) "Nothing is chosen here. The keys > and < choose an object."))
-          ((typep (first box) 'button) (click-chosen pane))
-          (t (destructuring-bind (subject left top right bottom) box
-               (open-offers-at pane
-                               (subjects-for-menu pane subject (round (+ left right) 2)
-                                                  (round (+ top bottom) 2))
-                               (round left) (round bottom)))
-             (highlight-further-row (window-popup (window-of pane)) 1)))))
+          ((typep (first box) '(or button fold-mark)) (click-chosen pane))
+          (t (apply #'open-menu-of-box pane box)))))
 
 (defun click-chosen (pane)
   "Do what a click on the object chosen in PANE does. Return true if an object is chosen."
