@@ -212,6 +212,36 @@ open, as if each had had something to show; it suggests no lines to try."
     (is (equal "red     ."
                (cli:unpainted-text (first (window::latest-lines transcript 2)))))))
 
+;;; Characters that the font lacks.
+
+(test fonts.the-package-named-is-that-of-the-script
+  (loop for (code package) in '((#x4E2D "fonts-droid-fallback") (#xAC00 "fonts-droid-fallback")
+                                (#x20001 "fonts-hanazono") (#x1F600 "fonts-symbola")
+                                (#x2603 "fonts-symbola") (#x16A0 "fonts-noto-core"))
+        do (is (equal package (window::font-package-for (code-char code))))
+           (is (mentions-p (window::missing-character-text (code-char code)) package))))
+
+(test fonts.mcclims-own-has-letters-but-no-runes
+  (let ((file (window::standard-font-file)))
+    (is (< 0.6 (window::advance-in-font file #\a) 0.61))
+    (is (null (window::advance-in-font file (code-char #x16A0))))
+    (is (equal '(nil 0) (window::font-for (code-char #x3B1))))))
+
+(test fonts.what-is-missing-is-said-once
+  (in-window (window robot)
+    (let ((window::*packages-named* '()))
+      (dotimes (count 3)
+        (window::report-missing-character window (code-char (+ #x16A0 count))))
+      (is (= 1 (count-if (lambda (line) (search "fonts-noto-core" line))
+                         (lines-of (said-in window))))))))
+
+(test transcript.wide-characters-take-two-columns
+  (let ((rows (window::rows-of-line 0 (make-string 7 :initial-element (code-char #x4E2D)) 10)))
+    (is (equal '((0 5) (5 7))
+               (mapcar (lambda (row) (list (window::text-row-start row) (window::text-row-stop row)))
+                       rows)))
+    (is (= 4 (window::text-columns (window::text-row-text (first rows)) 5 7)))))
+
 ;;; Commands.
 
 (test window.commands-steer-a-live-run

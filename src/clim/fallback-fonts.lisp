@@ -92,7 +92,7 @@ at most WIDTH pixels wide. Return NIL to draw it in McCLIM's own font."
   '((#x2E80 #xA4CF "fonts-droid-fallback") (#xAC00 #xD7FF "fonts-droid-fallback")
     (#xF900 #xFAFF "fonts-droid-fallback") (#xFF00 #xFFEF "fonts-droid-fallback")
     (#x2000 #x2BFF "fonts-symbola") (#x1D000 #x1FBFF "fonts-symbola")
-    (#x20000 #x3FFFF "fonts-droid-fallback") (0 #x10FFFF "fonts-noto-core"))
+    (#x20000 #x3FFFF "fonts-hanazono") (0 #x10FFFF "fonts-noto-core"))
   "Lists (from to package): the Debian package with a TrueType font for the character codes from
 FROM to TO. The first list that fits is valid.")
 
