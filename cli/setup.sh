@@ -259,8 +259,9 @@ compile() {  # NAME LISP-FORM: evaluate the form of build.lisp; show its trouble
     compile_anew evaluate_building "$log" "$2"
     compiled=$?
     unset ARS_MAGNA_LIBRARIES
+    # Also after a failure, which does not make the compiled libraries out of date.
+    [ ! -s "$libraries.list" ] || library_state "$libraries.list" >"$libraries.found"
     if [ $compiled -eq 0 ]; then
-        library_state "$libraries.list" >"$libraries.found"
         # For example, that this SBCL is newer than those tested.
         grep -a '^ars-magna: ' "$log" >&2 || :
         return 0

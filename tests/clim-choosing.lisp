@@ -6,7 +6,7 @@
 
 (defun pane-with-keys (window) (clim:pane-name (window::window-focus window)))
 
-(defun press-key-in-window (window name &optional character)
+(defun press-in-focus (window name &optional character)
   "Press the key NAME, or CHARACTER, in the pane of WINDOW that has the keys."
   (clim:handle-event (window::window-focus window)
                      (make-instance 'clim:key-press-event
@@ -15,22 +15,22 @@
 
 (defun press-keys (window &rest keys)
   (dolist (key keys)
-    (if (characterp key) (press-key-in-window window nil key) (press-key-in-window window key))))
+    (if (characterp key) (press-in-focus window nil key) (press-in-focus window key))))
 
-(defun give-keys-to-pane (window name)
+(defun focus-pane-named (window name)
   (window::give-keys-to (pane window name)))
 
 (defmacro in-painted-window ((window robot) &body body)
   "Run BODY with WINDOW laid out, in which the input line has the keys."
   `(in-window (,window ,robot)
      (lay-out ,window 1180 820)
-     (give-keys-to-pane ,window 'window::interactor)
+     (focus-pane-named ,window 'window::interactor)
      ,@body))
 
 (test choosing.tab-goes-to-each-display-in-turn
   (in-painted-window (window robot)
     (flet ((round-trip (key)
-             (loop do (press-key-in-window window key)
+             (loop do (press-in-focus window key)
                    collect (pane-with-keys window)
                    until (eq 'window::interactor (pane-with-keys window)))))
       (let ((names (round-trip :tab)))
@@ -47,7 +47,7 @@
                               (window::window-conversation window)))
           (cli::make-drawn-line :label "Robot> " :text "sta" :point 3
                                 :shown '("Robot> " "sta" 3)))
-    (press-key-in-window window :tab)
+    (press-in-focus window :tab)
     (is (eq 'window::interactor (pane-with-keys window)))
     (is (member :tab (keys-handed window)))))
 
@@ -60,13 +60,13 @@
       (press-keys window :tab :tab)
       (is (equal '(window::state) (marked)))
       (is (mentions-p (window::window-hint window) "Tab goes on"))
-      (press-key-in-window window :escape)
+      (press-in-focus window :escape)
       (is (null (marked))))))
 
 (test choosing.keys-choose-the-nearest-things-first
   (in-painted-window (window robot)
     (let ((pane (painted-world window)))
-      (give-keys-to-pane window 'window::world)
+      (focus-pane-named window 'window::world)
       (press-keys window #\>)
       (is (equal (list :robot (robot:robot-name robot)) (window::window-selection window)))
       (press-keys window #\>)
@@ -86,7 +86,7 @@
   (in-painted-window (window robot)
     (let ((pane (painted-world window)))
       (window::move-view pane 400 0)
-      (give-keys-to-pane window 'window::world)
+      (focus-pane-named window 'window::world)
       (press-keys window #\>)
       (multiple-value-bind (x y) (window::robot-position-in-pane pane)
         (is (window::in-view-p pane x y))))))
@@ -94,24 +94,24 @@
 (test choosing.a-panel-gets-return-before-what-is-chosen
   (in-painted-window (window robot)
     (painted-world window)
-    (give-keys-to-pane window 'window::world)
+    (focus-pane-named window 'window::world)
     (press-keys window #\> #\L :return)
     (is (not (window::popup-open-p window)))
     (is (not (mentions-p (said-in window) "STUDIO-ROBOT at")))))
 
 (test choosing.arrows-fold-unfold-and-scroll
   (in-painted-window (window robot)
-    (give-keys-to-pane window 'window::cameras)
-    (press-key-in-window window :left)
+    (focus-pane-named window 'window::cameras)
+    (press-in-focus window :left)
     (is (window::section-folded-p window 'window::cameras))
     (is (eq 'window::cameras-title (pane-with-keys window)))
-    (press-key-in-window window :right)
+    (press-in-focus window :right)
     (is (not (window::section-folded-p window 'window::cameras)))
     (is (eq 'window::cameras (pane-with-keys window)))
     (dotimes (count 60) (robot:add-designator robot :x 2 :y 2))
     (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
     (window::refresh window)
-    (give-keys-to-pane window 'window::designators)
+    (focus-pane-named window 'window::designators)
     (let ((pane (pane window 'window::designators)))
       (press-keys window :down :down)
       (is (= 96 (window::pane-offset pane)))
@@ -125,7 +125,7 @@
 (test choosing.page-keys-zoom-the-world
   (in-painted-window (window robot)
     (let ((pane (painted-world window)))
-      (give-keys-to-pane window 'window::world)
+      (focus-pane-named window 'window::world)
       (press-keys window :prior)
       (is (= 16 (window::pane-scale pane)))
       (press-keys window :next :next)
@@ -135,7 +135,7 @@
   (in-painted-window (window robot)
     (flet ((width () (window::pane-size (pane window 'window::world))))
       (let ((before (width)))
-        (give-keys-to-pane window 'window::side-splitter)
+        (focus-pane-named window 'window::side-splitter)
         (press-keys window :left :left)
         (is (= 30 (- before (width))))
         (press-keys window :right :right)
@@ -144,7 +144,7 @@
 (test choosing.return-presses-the-buttons-of-the-plans
   (in-painted-window (window robot)
     (window::fold-section window 'window::plan nil)
-    (give-keys-to-pane window 'window::plan)
+    (focus-pane-named window 'window::plan)
     (press-keys window #\> #\>)
     (is (mentions-p (window::window-hint window) "as bars over ticks"))
     (press-keys window :return)

@@ -238,8 +238,8 @@ open, as if each had had something to show; it suggests no lines to try."
 (test transcript.wide-characters-take-two-columns
   (let ((rows (window::rows-of-line 0 (make-string 7 :initial-element (code-char #x4E2D)) 10)))
     (is (equal '((0 5) (5 7))
-               (mapcar (lambda (row) (list (window::text-row-start row) (window::text-row-stop row)))
-                       rows)))
+               (loop for row in rows
+                     collect (list (window::text-row-start row) (window::text-row-stop row)))))
     (is (= 4 (window::text-columns (window::text-row-text (first rows)) 5 7)))))
 
 ;;; Commands.
