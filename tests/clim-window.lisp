@@ -216,16 +216,18 @@ open, as if each had had something to show; it suggests no lines to try."
 
 (test fonts.the-package-named-is-that-of-the-script
   (loop for (code package) in '((#x4E2D "fonts-droid-fallback") (#xAC00 "fonts-droid-fallback")
-                                (#x20001 "fonts-hanazono") (#x1F600 "fonts-symbola")
                                 (#x2603 "fonts-symbola") (#x16A0 "fonts-noto-core"))
         do (is (equal package (window::font-package-for (code-char code))))
-           (is (mentions-p (window::missing-character-text (code-char code)) package))))
+           (is (mentions-p (window::missing-character-text (code-char code)) package)))
+  (is (null (window::font-package-for (code-char #x1F600))))
+  (is (mentions-p (window::missing-character-text (code-char #x1F600)) "up to U+FFFF")))
 
 (test fonts.mcclims-own-has-letters-but-no-runes
   (let ((file (window::standard-font-file)))
     (is (< 0.6 (window::advance-in-font file #\a) 0.61))
     (is (null (window::advance-in-font file (code-char #x16A0))))
-    (is (equal '(nil 0) (window::font-for (code-char #x3B1))))))
+    (is (equal '(nil 0) (window::font-for (code-char #x3B1))))
+    (is (null (window::font-for (code-char #x1F600))))))
 
 (test fonts.what-is-missing-is-said-once
   (in-window (window robot)

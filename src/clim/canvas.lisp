@@ -150,7 +150,10 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
   (loop for character across string
         for at = x then (+ at width)
         for width = (* +character-width+ (ars-magna.cli:char-columns character))
-        do (draw-characters canvas gcontext at y (string character)
+        do (draw-characters canvas gcontext at y
+                            (if (< +greatest-drawable-code+ (char-code character))
+                                +box-in-place-of-character+
+                                (string character))
                             (text-style-for-character canvas character))))
 
 (defmethod paint-text ((canvas clim-canvas) gcontext x y string size anchor upward-p bold-p)

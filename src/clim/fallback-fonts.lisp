@@ -42,8 +42,15 @@ none. FILE is NIL for McCLIM's own font; ADVANCE is in ems.")
                            when (first font) collect (first font))
                      :test #'equal))
 
+(defconstant +greatest-drawable-code+ #xFFFF)
+
+(define-constant +box-in-place-of-character+ (string (code-char #x25A1)) :test #'equal)
+
 (defun find-font-for (character)
   "Return a list (file advance) of a font to draw CHARACTER in, or NIL; see *FONTS-OF-CHARACTERS*."
+  ;; McCLIM reads no glyphs of higher codes, but does not say so.
+  (when (< +greatest-drawable-code+ (char-code character))
+    (return-from find-font-for nil))
   (flet ((font-in (files)
            (loop for file in files
                  for advance = (advance-in-font file character)
@@ -91,10 +98,9 @@ at most WIDTH pixels wide. Return NIL to draw it in McCLIM's own font."
 (defparameter *font-packages*
   '((#x2E80 #xA4CF "fonts-droid-fallback") (#xAC00 #xD7FF "fonts-droid-fallback")
     (#xF900 #xFAFF "fonts-droid-fallback") (#xFF00 #xFFEF "fonts-droid-fallback")
-    (#x2000 #x2BFF "fonts-symbola") (#x1D000 #x1FBFF "fonts-symbola")
-    (#x20000 #x3FFFF "fonts-hanazono") (0 #x10FFFF "fonts-noto-core"))
+    (#x2000 #x2BFF "fonts-symbola") (0 #xFFFF "fonts-noto-core"))
   "Lists (from to package): the Debian package with a TrueType font for the character codes from
-FROM to TO. The first list that fits is valid.")
+FROM to TO. The first list that fits is valid; no package helps beyond U+FFFF.")
 
 (defun font-package-for (character)
   (third (find-if (lambda (range) (<= (first range) (char-code character) (second range)))
@@ -104,7 +110,11 @@ FROM to TO. The first list that fits is valid.")
   (zerop (nth-value 2 (uiop:run-program "command -v fc-list" :ignore-error-status t))))
 
 (defun missing-character-text (character)
-  "Return a text that says that no font has CHARACTER, and which Debian packages to install."
+  "Return a text that says that CHARACTER cannot be drawn, and which Debian packages to install."
+  (unless (font-package-for character)
+    (return-from missing-character-text
+      (format nil "The character U+~4,'0X is shown as a box, because the window can draw only ~
+                   characters up to U+FFFF." (char-code character))))
   (format nil "The character U+~4,'0X is shown as a box, because the window can draw no installed ~
                font that has it. Install the Debian package~:[s fontconfig and~;~] ~A, then start ~
                this program again."
