@@ -98,6 +98,7 @@
   (in-window (window robot)
     (let ((simulation (time:current-simulation)) (pane (painted-world window)))
       (command:robot-turn robot 1 nil)
+      (run:run-ticks 1)
       (run:start-clock simulation :rate 1/8)
       (unwind-protect
            (let ((before (list (window::pane-left pane) (window::pane-top pane))))
