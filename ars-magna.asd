@@ -280,7 +280,7 @@
                              (:file "clim-awaiting")
                              (:file "clim-x-server") (:file "clim-magnification")
                              (:file "clim-clipboard") (:file "clim-keyboard")
-                             (:file "clim-controls")))))
+                             (:file "clim-controls") (:file "clim-names")))))
 
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
@@ -327,7 +327,7 @@
                  (:file "svg-reading") (:file "display") (:file "display-files")
                  (:file "palette") (:file "pictures") (:file "picture-margins")
                  (:file "picture-crowds") (:file "bundles") (:file "display-details")
-                 (:file "display-drawing") (:file "films") (:file "run-pictures")
+                 (:file "live-views") (:file "display-drawing") (:file "films") (:file "run-pictures")
                  (:file "overlapping-ways") (:file "run-picture-parts")
                  (:file "moments") (:file "plots") (:file "plots-text")
                  (:file "clim") (:file "cli") (:file "cli-telling")

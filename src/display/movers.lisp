@@ -186,10 +186,20 @@ name is SHOWN, else as a ring."
       (disc-radius image robots)
       (ring-radius image robots)))
 
+(defun draw-disc-body (canvas x y radius angle)
+  "Draw a disc with a nose in direction ANGLE, which shows the heading if a thing covers the disc."
+  (draw-circle canvas x y radius t)
+  (draw-lines canvas draw-gcontext*
+              (append (point-at-distance x y angle (* 1.5d0 radius))
+                      (point-at-distance x y (+ angle 0.7d0) radius)
+                      (point-at-distance x y (- angle 0.7d0) radius))
+              :fill-p t))
+
 (defun draw-disc (canvas x y radius angle position)
   "Draw a robot like DRAW-RING, but as a disc in its colour with a white arrowhead."
-  (with-gcontext (draw-gcontext* :foreground white*) (draw-circle canvas x y (+ radius 2) t))
-  (with-color (nth-ink position) (draw-circle canvas x y radius t))
+  (with-gcontext (draw-gcontext* :foreground white*)
+    (draw-disc-body canvas x y (+ radius 2) angle))
+  (with-color (nth-ink position) (draw-disc-body canvas x y radius angle))
   (with-gcontext (draw-gcontext* :foreground white*)
     (draw-arrowhead canvas x y (- radius 2) angle t)))
 

@@ -11,6 +11,7 @@
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (sb-ext:add-package-local-nickname :window :ars-magna.clim)
   (sb-ext:add-package-local-nickname :canvas :ars-magna.canvas)
+  (sb-ext:add-package-local-nickname :display :ars-magna.display)
   (sb-ext:add-package-local-nickname :client :ars-magna.window-client))
 
 (defparameter *movers* 30)
@@ -207,6 +208,65 @@ them are painted, and how busy processors are."
   (say-torn "torn frames of 10,000, live" 10000 window)
   (say-free simulation)
   (say-idle simulation))
+
+;;; Names, in a large world with robots that drive.
+
+(defun keep-travelling (robot points)
+  "Let ROBOT go to each of POINTS, (x y), in turn, on and on."
+  (destructuring-bind ((x y) . more) points
+    (ars-worlds:robot-go-to robot x y
+                            (lambda (&rest answers)
+                              (declare (ignore answers))
+                              (keep-travelling robot (append more (list (first points))))))))
+
+(defun placed-names (window)
+  "Return lists (target box) of the names of things at rest in WINDOW."
+  (client:run-in-window
+   window
+   (lambda ()
+     (loop for name in (display::live-view-names (window::pane-live-view (world-pane window)))
+           collect (list (display::label-target-owner (display::placed-name-target name))
+                         (display::placed-name-box name))))))
+
+(defun say-names (name window)
+  "Print figures of a live run that is shown with names, and how many of them have moved, though
+their things have not."
+  (let ((frames *frames*) (before (get-internal-run-time)) (names (placed-names window)))
+    (sleep 10)
+    (let ((frames (- *frames* frames)) (time (- (get-internal-run-time) before)))
+      (say name (/ frames 10) "frames/s")
+      (say "  time of a processor for each frame"
+           (/ time (max 1 frames) internal-time-units-per-second 1d-6) "us"))
+    (say "  names of things at rest" (length names) "names")
+    (say "  of these, moved in 10 s"
+         (loop with after = (placed-names window)
+               for (thing box) in names
+               for now = (second (assoc thing after))
+               count (and now (not (equal box now))))
+         "names")))
+
+(defun say-office (window simulation)
+  (client:run-in-window window (lambda () (window::fit-whole-map (world-pane window))))
+  (keep-travelling (first (run:simulation-robots simulation))
+                   '((100 24) (20 10) (62 38) (30 28) (110 12)))
+  (keep-travelling (second (run:simulation-robots simulation))
+                   '((60 38) (15 24) (90 38) (30 28)))
+  (sleep 3)
+  (loop for (name . layers) in `(("office, 100 ticks/s, all names" :names
+                                  ,@display:*window-layers*)
+                                 ("office, 100 ticks/s, names of what moves"
+                                  ,@display:*window-layers*)
+                                 ("office, 100 ticks/s, no names"
+                                  ,@(remove :mover-names display:*window-layers*)))
+        do (client:run-in-window window (lambda () (setf (window::window-layers window) layers)))
+           (sleep 1)
+           (say-names name window)))
+
+(let* ((simulation (run:fresh-simulation '(ars-worlds:marvin ars-worlds:gofer) :seed 1)))
+  (run:start-clock simulation :rate 100)
+  (call-with-shown (lambda (window) (say-office window simulation))
+                   (first (run:simulation-robots simulation)))
+  (run:stop-clock simulation))
 
 (let* ((simulation (run:fresh-simulation '(watched) :seed 1))
        (robot (first (run:simulation-robots simulation)))
