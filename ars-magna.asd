@@ -216,12 +216,12 @@
                    (:file "listening") (:file "jobs") (:file "line") (:file "finding")
                    (:file "arguments") (:file "plans") (:file "break-requests")
                    (:file "reading") (:file "carrying-out") (:file "debugger")
-                   (:file "completing") (:file "prompt")))
+                   (:file "completing") (:file "recordings") (:file "prompt")))
      (:module "lines" :serial t
       :components ((:file "own-lines") (:file "running-lines") (:file "status-lines")
                    (:file "map-lines") (:file "world-lines") (:file "plan-lines")
                    (:file "acting-lines") (:file "topics") (:file "help")
-                   (:file "picture-lines") (:file "other-runs")))
+                   (:file "picture-lines") (:file "film-lines") (:file "other-runs")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "experiments") (:file "spreading")
                    (:file "experiment-command") (:file "scripts") (:file "main")))))))
@@ -238,12 +238,10 @@
                  (:file "panes") (:file "world-pane")
                  (:file "transcript") (:file "clipboard") (:file "transcript-pane")
                  (:file "prompt") (:file "rate-slider") (:file "bar") (:file "popup")
-                 (:file "pointing")
-                 (:file "suggestions") (:file "interactor") (:file "offers") (:file "plan-pane")
-                 (:file "parameter-pane")
-                 (:file "world-mouse") (:file "layout-pane") (:file "choosing")
-                 (:file "keyboard")
-                 (:file "window") (:file "commands") (:file "menus") (:file "opening")
+                 (:file "pointing") (:file "suggestions") (:file "interactor") (:file "offers")
+                 (:file "plan-pane") (:file "parameter-pane") (:file "world-mouse")
+                 (:file "layout-pane") (:file "choosing") (:file "keyboard") (:file "window")
+                 (:file "commands") (:file "recording") (:file "menus") (:file "opening")
                  (:file "x-server") (:file "following")))))
 
 (defsystem "ars-magna/fiveam"

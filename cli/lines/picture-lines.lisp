@@ -1,4 +1,4 @@
-;;;; picture-lines.lisp -- the world in files and windows: PICTURE, FILM, WINDOW, IMPORT, EXPORT.
+;;;; picture-lines.lisp -- the world in files and windows: PICTURE, WINDOW, IMPORT, EXPORT.
 
 (in-package :ars-magna.cli)
 
@@ -48,26 +48,6 @@ that the map has at most 900 x 700 pixels."
     "Save a picture of the world as it is now in FILE, replacing it."
   (let ((path (apply #'save-picture (session-robot) (path-of-name file) (picture-options what))))
     (format t "~A~%" (native-name path))))
-
-;;; FILM.
-
-(define-line "FILM" (session (file :file "a name that ends in .html or .svg")
-                             (what :rest "pixels per cell, names of layers; BARE; ANYWAY"
-                                   :optional))
-    (:seeing)
-    "Save a film of the run so far in FILE, replacing it: an HTML page for any browser, to play,
-stop and step through, or an animated SVG. The film marks what robots grasped, released and stowed,
-failed commands and plans, and errors in your code. After FILE, give the words that PICTURE takes.
-ANYWAY saves the film even if definitions have changed since the run began."
-  (check-run-not-over)
-  (let* ((words (split-words (or what "")))
-         (others (remove "ANYWAY" words :test #'string-equal))
-         (options (picture-options (format nil "~{~A~^ ~}" others) "FILM")))
-    (flet ((save (*frame-hook*)
-             (apply #'save-animation nil (path-of-name file)
-                    :anyway (/= (length words) (length others)) options)))
-      (format t "~A~%" (native-name (call-showing-progress
-                                     #'save session (simulation-tick (current-simulation))))))))
 
 ;;;; Windows
 

@@ -123,7 +123,8 @@ time stands still, report that the line waits."
            (unwind-protect (call-with-syntax 'double-float (lambda () (run-lines session))
                                              (or (reader-package (session-reader session))
                                                  (user-package)))
-             (stop-listening session))))
+             (stop-listening session))
+           (save-film-of-ended-session session)))
     (call-with-debugger session
                         (lambda ()
                           (call-with-streams session (lambda () (call-holding-interrupts #'run))))))

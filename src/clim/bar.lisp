@@ -184,8 +184,10 @@ room for both labels, so that the other parts of the tool bar stay in place."
               (= count 1) count))))
 
 (defun run-status-text (window)
-  (format nil "~A  ~A~:[~;; a program waits for your answer~]~@[; ~A~]" (tick-text window)
+  (format nil "~A  ~A~@[; ~A~]~:[~;; a program waits for your answer~]~@[; ~A~]"
+          (tick-text window)
           (progress-text (watcher-progress (window-watcher window)))
+          (ars-magna.cli:recording-text (window-session window) (window-simulation window))
           (line-awaiting-input (window-conversation window))
           (waiting-programs-text window)))
 

@@ -39,7 +39,8 @@
 
 (defstruct (menu (:constructor make-menu (title items)) (:copier nil))
   "A menu with TITLE. ITEMS is a list, or a function that returns a list. Its elements are lists
-(title command), menus, and NIL for a gap."
+(title command), menus, and NIL for a gap. The title of an element may be a function of the window
+that returns the title."
   (title "" :type string :read-only t)
   (items '() :type (or list function) :read-only t))
 
@@ -72,6 +73,7 @@
                             ("All larger" com-larger) ("All smaller" com-smaller)))
         (make-menu "Robot" #'robot-menu-items)
         (make-menu "Window" '(("Save as SVG" com-save-svg) ("Save as PNG" com-save-png)
+                              (recording-title com-record)
                               nil
                               ("Keys and mouse" com-help) ("Close window" com-close))))
   "The menus of the menu bar, from left to right.")
@@ -88,7 +90,8 @@
          (make-row (format nil "~A >" (menu-title item))
                    :action (lambda () (open-menu window item x y menu))))
         (t (destructuring-bind (title command) item
-             (make-row title :action (lambda () (funcall command)))))))
+             (make-row (if (stringp title) title (funcall title window))
+                       :action (lambda () (funcall command)))))))
 
 (defun open-menu (window menu x y &optional outer)
   "Show MENU at X, Y of WINDOW. OUTER is the menu that contains MENU, or NIL."

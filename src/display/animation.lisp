@@ -12,13 +12,13 @@
   "The largest number of frames of a film, unless the user sets :EVERY.")
 
 (defvar *frame-hook* (constantly nil)
-  "A function that is called with the tick of each drawn frame, to report progress.")
+  "A function that is called with ticks during the replay for a film, to report progress.")
 
-(defun call-with-frames (function journal every until &key part (watch #'identity))
+(defun call-with-frames (function journal every until &key (from 0) part (watch #'identity))
   "Replay JOURNAL up to the tick UNTIL, by default its end. Call FUNCTION with a snapshot at the
-beginning, every EVERY ticks, and at the end. The snapshots show PART of the map, or the whole map
-if PART is NIL. Call WATCH with the simulation at the beginning and after each tick. Errors of
-FUNCTION are signalled after the replay."
+tick FROM, every EVERY ticks after it, and at the end. The snapshots show PART of the map, or the
+whole map if PART is NIL. Call WATCH with the simulation at the beginning and after each tick.
+Errors of FUNCTION are signalled after the replay."
   (let ((last nil) (queue *message-queue*) (trouble nil))
     (labels ((draw ()
                ;; Errors in drawing are signalled here; an observer's would be messages.
@@ -27,12 +27,13 @@ FUNCTION are signalled after the replay."
                    (error (condition) (setf trouble condition)))))
              (show (simulation)
                (setf last (take-snapshot (simulation-world simulation) last))
-               (unless trouble (draw))
-               (funcall *frame-hook* (snapshot-tick last)))
-             (look (simulation)
+               (unless trouble (draw)))
+             (look (simulation &aux (tick (simulation-tick simulation)))
                (keep-history simulation)
                (funcall watch simulation)
-               (when (zerop (mod (simulation-tick simulation) every)) (show simulation)))
+               (when (zerop (mod (- tick from) every))
+                 (when (>= tick from) (show simulation))
+                 (funcall *frame-hook* tick)))
              (end ()
                (let ((simulation (current-simulation)))
                  (unless (= (snapshot-tick last) (simulation-tick simulation))
@@ -40,9 +41,9 @@ FUNCTION are signalled after the replay."
                  (when trouble (error trouble)))))
       (call-with-replay #'end journal :until until :observer #'look :beginning #'look))))
 
-(defun frame-step (journal every until)
+(defun frame-step (journal every until from)
   (or every
-      (max 1 (ceiling (if until (min until (journal-end journal)) (journal-end journal))
+      (max 1 (ceiling (- (if until (min until (journal-end journal)) (journal-end journal)) from)
                       +most-frames+))))
 
 (defun write-frame (canvas index count seconds function)
@@ -101,6 +102,11 @@ WRONG-ARGUMENT for OPERATOR if UNTIL is not a tick of JOURNAL."
                        (format nil "a tick of the journal, from 0 to ~D, or NIL" end)))
     (or until end)))
 
+(defun check-start-tick (from end)
+  "Signal WRONG-ARGUMENT for SAVE-ANIMATION unless FROM is a tick of a film that ends at END."
+  (check-argument save-animation from (whole-p from 0 end)
+                  (format nil "a tick from 0 to ~D, the end of the film" end)))
+
 (defun numbered-file (file number)
   "Return the pathname FILE with NUMBER added to its name: run-0001.png for run.png and 1."
   (merge-pathnames (make-pathname :name (format nil "~A-~4,'0D" (pathname-name file) number))
@@ -108,13 +114,13 @@ WRONG-ARGUMENT for OPERATOR if UNTIL is not a tick of JOURNAL."
 
 (addition save-animation)
 (define-with-keywords save-animation
-    (journal file &key every until (rate 10) series (display :world) moments (kinds t)
+    (journal file &key every (from 0) until (rate 10) series (display :world) moments (kinds t)
                        (layers *picture-layers*) (in-color t) scale title part anyway)
   "Replay a run and save it in FILE as a film. Return the truename of FILE, or with SERIES a list of
 truenames. JOURNAL is a journal, the name of a journal file, or NIL for the journal of the current
-simulation. The film has a frame for the beginning and one after every EVERY ticks, up to the tick
-UNTIL, by default the end. By default EVERY is chosen so that the film has at most 600 frames. RATE
-is the number of frames per second.
+simulation. The film has a frame for the tick FROM, by default 0, and one after every EVERY ticks, up
+to the tick UNTIL, by default the end. By default EVERY is chosen so that the film has at most 600
+frames. RATE is the number of frames per second.
 
 The name of FILE chooses the kind of film:
 - .html: a page that plays, stops and searches the run in any browser, without a network. The page
@@ -133,14 +139,15 @@ arguments are those of SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the erro
                    (picture-kind 'save-animation file '(:html :svg)
                                  ".html or .svg; with :series t, in .svg or .png")))
          (journal (resolve-journal journal 'save-animation))
-         (moments (checked-moments 'save-animation moments
-                                   (checked-end-tick 'save-animation journal until)))
+         (end (checked-end-tick 'save-animation journal until))
+         (moments (checked-moments 'save-animation moments end))
          (title (title-with-remark title journal anyway))
          ;; A default title has a tick, which frames show themselves.
-         (look (list :every every :until until
+         (look (list :every every :from from :until until
                      :layers (if (or series title) layers (remove :title layers))
                      :in-color in-color :scale scale :title title :part part)))
     (check-animation series every rate display layers scale title)
+    (check-start-tick from end)
     (check-moment-kinds 'save-animation kinds)
     (with-broken-graphics-reported
       (replaying (anyway)
@@ -151,10 +158,10 @@ arguments are those of SVG-PICTURE. Signals WRONG-ARGUMENT, MISUSE, and the erro
                                     (apply #'animation-text journal :rate rate look))
                                 file))))))
 
-(defun animation-text (journal &key every until rate layers in-color scale title part)
+(defun animation-text (journal &key every from until rate layers in-color scale title part)
   (let ((snapshots '()))
     (call-with-frames (lambda (snapshot) (push snapshot snapshots))
-                      journal (frame-step journal every until) until :part part)
+                      journal (frame-step journal every until from) until :from from :part part)
     (let* ((snapshots (reverse snapshots)) (first (first snapshots)))
       (framed-picture-svg first
                           (lambda (canvas)
@@ -213,7 +220,7 @@ of FILES, the files already written, to the message."
           (reject-use "~A. Written so far: ~A." (one-line-text trouble) (file-names-text files))
           (error trouble)))))
 
-(defun save-series (journal file &key every until display layers in-color scale title part)
+(defun save-series (journal file &key every from until display layers in-color scale title part)
   (let ((robot (first (getf (journal-header journal) :robots))) (files '()))
     (flet ((save (snapshot)
              (save-snapshot snapshot (snapshot-robot snapshot robot)
@@ -223,6 +230,7 @@ of FILES, the files already written, to the message."
       (call-with-frames (lambda (snapshot)
                           (push (call-naming-files-in-errors (lambda () (save snapshot)) files)
                                 files))
-                        journal (frame-step journal every until) until :part part))
+                        journal (frame-step journal every until from) until
+                        :from from :part part))
     (warn-of-older-frames file (length files))
     (reverse files)))

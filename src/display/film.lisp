@@ -218,9 +218,10 @@ things to images. ROBOTS are images of robots. LINES are entries for lines, the 
           (write-escaped-text (entry-text entry) out)
           (format out "</li>~%"))))))
 
-(defun record-film (journal every until watch part layers in-color scale)
-  "Replay JOURNAL and record a film. Call WATCH with the simulation after each tick. Return five
-values: the reel, the ticks of its frames, SVGs of the first and last frames, and the contents."
+(defun record-film (journal every from until watch part layers in-color scale)
+  "Replay JOURNAL and record a film of the ticks FROM to UNTIL. Call WATCH with the simulation after
+each tick. Return five values: the reel, the ticks of its frames, SVGs of the first and last frames,
+and the contents."
   (let ((reel (make-reel)) (ticks '()) (contents nil) (first nil) (last nil)
         ;; The legend and the title of a page are HTML.
         (shown (set-difference layers '(:legend :title))))
@@ -236,22 +237,29 @@ values: the reel, the ticks of its frames, SVGs of the first and last frames, an
                               first (or first last))
                         (push (snapshot-tick snapshot) ticks)
                         (add-frame last reel))
-                      journal (frame-step journal every until) until :part part :watch watch)
+                      journal (frame-step journal every until from) until
+                      :from from :part part :watch watch)
     (flet ((still (movers)
              (whole-frame-svg (film-cast-opening contents) movers shown in-color scale)))
       (values reel (reverse ticks) (still first) (still last) contents))))
 
-(defun film-text (journal moments &key every until rate kinds layers in-color scale title part)
+(defun moments-from (tick moments)
+  (remove-if (lambda (moment) (< (moment-tick moment) tick)) moments))
+
+(defun film-text (journal moments
+                  &key every from until rate kinds layers in-color scale title part)
   "Return the HTML page of a film of JOURNAL. MOMENTS are added to the moments found in the run."
   (multiple-value-bind (watch seen) (make-moments-watcher)
     (multiple-value-bind (reel ticks first last contents)
-        (record-film journal every until watch part layers in-color scale)
+        (record-film journal every from until watch part layers in-color scale)
       (with-output-to-string (out)
         (write-film out (or title (film-title journal ticks)) first last
                     (if (member :legend layers) (film-legend-html contents layers in-color) "")
                     reel ticks rate
-                    (sort-moments
-                     (append (moments-of-kinds kinds (append (funcall seen)
-                                                             (moments-in-remarks journal until)))
-                             moments))
+                    (moments-from
+                     from
+                     (sort-moments
+                      (append (moments-of-kinds kinds (append (funcall seen)
+                                                              (moments-in-remarks journal until)))
+                              moments)))
                     (and (rest (snapshot-robots (film-cast-opening contents))) t))))))
