@@ -136,7 +136,7 @@
    (:module "src/plots" :serial t
     :components ((:file "package") (:file "figures") (:file "looks") (:file "axis")
                  (:file "plane") (:file "line-chart") (:file "survival-chart")
-                 (:file "row-charts")))
+                 (:file "row-charts") (:file "time-series") (:file "time-chart")))
    (:module "src/trails" :serial t
     :components ((:file "package") (:file "trails") (:file "picture")
                  (:file "spots") (:file "run-picture")))
@@ -216,12 +216,14 @@
                    (:file "listening") (:file "jobs") (:file "line") (:file "finding")
                    (:file "arguments") (:file "plans") (:file "break-requests")
                    (:file "reading") (:file "carrying-out") (:file "debugger")
-                   (:file "completing") (:file "recordings") (:file "prompt")))
+                   (:file "completing") (:file "recordings")
+                   (:file "plotting") (:file "prompt")))
      (:module "lines" :serial t
       :components ((:file "own-lines") (:file "running-lines") (:file "status-lines")
                    (:file "map-lines") (:file "world-lines") (:file "plan-lines")
                    (:file "acting-lines") (:file "topics") (:file "help")
-                   (:file "picture-lines") (:file "film-lines") (:file "other-runs")))
+                   (:file "picture-lines") (:file "film-lines") (:file "plot-lines")
+                   (:file "other-runs")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "experiments") (:file "spreading")
                    (:file "experiment-command") (:file "scripts") (:file "main")))))))

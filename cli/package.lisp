@@ -29,7 +29,13 @@ ends the Lisp process. See the manual, 3.7, A and E.")
   (:import-from :ars-magna.rpl-robot #:rpl-runner
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use #:*commanded-robot-hook* #:note-robot-commanded)
-  (:import-from :ars-magna.rpl-robot #:*trace-plans*)
+  (:import-from :ars-magna.rpl-robot #:*trace-plans* #:all-fluent-variables)
+  (:import-from :ars-magna.rpl.fluents
+                #:fluent-p #:known-pulse-p #:vector-variable-kind #:known-fluent-variable-p
+                #:peek-fluent #:peek-pulses)
+  (:import-from :ars-magna.plots
+                #:time-series #:make-time-series #:time-series-index #:add-sample #:cut-time-series #:last-sample
+                #:collect-time-charts #:time-charts-svg #:save-chart #:value-and-unit-text)
   (:import-from :ars-magna.rpl.language #:all-constructs)
   (:import-from :ars-magna.nisp #:readtable-name)
   (:import-from :ars-magna.geometry #:pt-x #:pt-y)

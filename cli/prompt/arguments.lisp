@@ -116,7 +116,7 @@ not evaluated, so a quote before the datum does not matter."
 
 (deftype rest-type ()
   "The types of arguments that take the rest of a line."
-  '(member :rest :line :form :map-words))
+  '(member :rest :line :form :map-words :plot))
 
 (defun token-value (type token)
   "Return what TOKEN stands for as an argument of TYPE. In the name of a file, ~ is expanded."

@@ -254,7 +254,7 @@ them if QUOTED-P is true (the argument begins with a double quote) or one of TEX
       (case type
         (:line (line-completions session text start))
         (:form (lisp-completions session text (length text)))
-        (:map-words (word-completions text (argument-choices type session text)))
+        ((:map-words :plot) (word-completions text (argument-choices type session text)))
         (:specification (specification-completions text (length text)))
         (t (let* ((typed (subseq text start))
                   (quoted-p (starts-with-subseq "\"" typed))

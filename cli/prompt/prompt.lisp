@@ -50,7 +50,8 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
     (when (session-place session) (funcall (session-place session)))
     (continue-in-next-run session))
   (setf (session-robot-name session) *prompt-robot*)
-  (follow-simulation session))
+  (follow-simulation session)
+  (follow-plots session *simulation* *prompt-robot*))
 
 (defun run-next-line (session)
   "Read a line of SESSION and run it; at the end of input, end the session."
@@ -124,6 +125,7 @@ time stands still, report that the line waits."
                                              (or (reader-package (session-reader session))
                                                  (user-package)))
              (stop-listening session))
+           (stop-plotting session)
            (save-film-of-ended-session session)))
     (call-with-debugger session
                         (lambda ()

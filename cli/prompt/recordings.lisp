@@ -99,18 +99,25 @@ SESSION continues to record if the film cannot be saved. Call HOOK with ticks to
         simulation
         (or (global-value '*simulation*) simulation))))
 
-(defun save-film-of-ended-session (session)
-  "Save the film that SESSION, which is over, still records. Print where it is or, if SESSION had a
-window, queue a message for other prompts."
+(defun save-last-film (session)
+  "Save the film that SESSION still records, if any. Print where it is, or why it is not saved."
   (let ((recording (session-recording session)))
     (when recording
-      (let ((*message-queue* (simulation-messages (run-of-other-prompts recording))))
-        (handler-case (let ((text (end-recording session)))
-                        (if (session-place session)
-                            (message-set text)
-                            (format t "~A~%" text)))
-          (error (condition)
-            (warning-set (format nil "The film since tick ~D is not saved: ~A. While the run goes ~
-                                      on, the line FILM file FROM ~D saves it."
-                                 (recording-start recording) (one-line-text condition)
-                                 (recording-start recording)))))))))
+      (handler-case (format t "~A~%" (end-recording session))
+        (error (condition)
+          (format t "The film since tick ~D is not saved: ~A. While the run goes on, the line FILM ~
+                     file FROM ~D saves it.~%"
+                  (recording-start recording) (one-line-text condition)
+                  (recording-start recording)))))))
+
+(defun save-film-of-ended-session (session)
+  "Save the film that SESSION, which is over, still records. Print where it is or, if SESSION had a
+window, queue a message about it for other prompts."
+  (let ((recording (session-recording session)))
+    (cond ((null recording))
+          ((session-place session)
+           (let ((*message-queue* (simulation-messages (run-of-other-prompts recording))))
+             (message-set (string-right-trim '(#\Newline)
+                                             (with-output-to-string (*standard-output*)
+                                               (save-last-film session))))))
+          (t (save-last-film session)))))

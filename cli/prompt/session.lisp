@@ -3,7 +3,7 @@
 (in-package :ars-magna.cli)
 
 (export '(session make-session session-robot session-errors session-input session-quiet-p
-          session-recording
+          session-recording session-plotter
           *prompt-robot*))
 
 (defstruct (break-request (:constructor make-break-request (condition restarts thread sessions))
@@ -116,8 +116,9 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
   ;; What has been issued and may not have ended, and whether Lisp may have issued more.
   (jobs '() :type list)
   (lisp-p nil)
-  ;; The film that it records, or NIL.
+  ;; The film that it records, and what it plots; or NIL.
   (recording nil)
+  (plotter nil)
   ;; After a rewind of a run with awaited plans: the function to call first, with this session.
   (after-rewind nil :type (or null function))
   (over-p nil)

@@ -174,6 +174,8 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
   (check-window-option options)
   (let ((session (make-session-from-options options)))
     (call-with-watchers session options (lambda () (run-session-with-options session options)))
+    ;; The process ends with all windows.
+    (mapc #'save-last-film (running-sessions))
     (report-session-end session
                         (if (and (session-batch-p session) (plusp (session-errors session))) 1 0))))
 

@@ -3,7 +3,8 @@
 (in-package :ars-magna.rpl.fluents)
 
 (export '(base-fluents depends-p was-read-p forget-reading fluent-watchers fluent-text
-          operand-value checked-condition truth-value unwatch watch repair-fluents))
+          operand-value checked-condition truth-value unwatch watch repair-fluents
+          peek-fluent peek-pulses))
 
 ;;; Computing.
 
@@ -155,6 +156,22 @@ variable that holds a fluent."
         ((and (simple-vector-p object) (fluents-vector-p object))
          (reject-fluent-vector object "fluent-value"))
         (t object)))
+
+;;; For displays. Other threads may link fluents meanwhile, so this uses no links.
+
+(defun peek-fluent (object)
+  "Return the value of OBJECT, a fluent, or any other OBJECT itself. The fluent does not count as
+read. Any thread may call this. Signals the errors of the operators of networks."
+  (if (fluent-p object)
+      (let ((fluent (entity-here object)))
+        (if (and (derived-p fluent) (zerop (derived-users fluent)) (not (view-p fluent)))
+            (apply (derived-operator fluent) (mapcar #'peek-fluent (derived-sources fluent)))
+            (fluent-now fluent)))
+      object))
+
+(defun peek-pulses (fluent)
+  "Return how often FLUENT was pulsed. FLUENT does not count as read. Any thread may call this."
+  (fluent-pulses (entity-here fluent)))
 
 ;;; Building.
 

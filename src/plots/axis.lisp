@@ -124,13 +124,14 @@ as fit, each at least LEAST pixels wide. The extremes of VALUES are INSET pixels
 
 ;;; The axis upward. Its ends are marks.
 
-(defun numeric-y-axis (values percent range)
-  "Return a vertical axis for VALUES and the numbers of RANGE, without its position on the page."
+(defun numeric-y-axis (values percent range &optional (most 6))
+  "Return a vertical axis for VALUES and the numbers of RANGE, without its position on the page. At
+most about MOST steps separate its marks."
   (multiple-value-bind (low high) (value-range (append range values))
     (let* ((low (if (<= 0 low (/ high 2)) 0 low))
            ;; 0 and 1 can be counts or shares.
            (least-mark-step (if (<= high 1) 0 (least-mark-step values percent)))
-           (step (max least-mark-step (choose-round-step (- high low) 6)))
+           (step (max least-mark-step (choose-round-step (- high low) most)))
            (low (multiple-below step low))
            (high (multiple-above step high)))
       (make-axis :low low :high high :marks (step-marks step low high percent)))))
