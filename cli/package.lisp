@@ -34,7 +34,8 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:fluent-p #:known-pulse-p #:vector-variable-kind #:known-fluent-variable-p
                 #:peek-fluent #:peek-pulses)
   (:import-from :ars-magna.plots
-                #:time-series #:make-time-series #:time-series-index #:add-sample #:cut-time-series #:last-sample
+                #:time-series #:make-time-series #:time-series-index #:add-sample
+                #:cut-time-series #:last-sample
                 #:collect-time-charts #:time-charts-svg #:save-chart #:value-and-unit-text)
   (:import-from :ars-magna.rpl.language #:all-constructs)
   (:import-from :ars-magna.nisp #:readtable-name)

@@ -8,7 +8,9 @@
 
 (defun speed-now (robot tick)
   "Return how many metres ROBOT has driven in the tick TICK."
-  (if (= tick (robot-drove-tick robot)) (abs (robot-moved robot)) 0))
+  (let ((metres (if (= tick (robot-drove-tick robot)) (abs (robot-moved robot)) 0)))
+    ;; A wall stops a robot up to rounding errors.
+    (if (< metres 1d-9) 0 metres)))
 
 (defun distance-function (metres tick)
   "Return a function that adds up the distance that a robot drives, from METRES at TICK or from 0."
@@ -47,10 +49,10 @@
     (and (fluent-p fluent) fluent)))
 
 (defun fluent-quantity (variable index)
-  "Return the quantity that plots the fluent in VARIABLE, or in element INDEX of the vector there. Of
-a fluent that is only pulsed, the quantity is the number of pulses."
+  "Return the quantity that plots the fluent in VARIABLE, or in element INDEX of the vector there.
+If the fluent is only pulsed, the quantity is the number of pulses."
   (let ((pulsed-p (known-pulse-p variable)))
-    (make-quantity (format nil "~(~A~)~@[ ~D~]" variable index) (if pulsed-p "pulses" "")
+    (make-quantity (format nil "~(~A~)~@[ ~D~]" variable index) ""
                    (stateless-maker
                     (lambda (robot tick)
                       (declare (ignore robot tick))
@@ -59,7 +61,7 @@ a fluent that is only pulsed, the quantity is the number of pulses."
                    t)))
 
 (defun fluents-count (variable kind)
-  "Return the number of fluents in the vector VARIABLE, one for each part of KIND; NIL for one fluent."
+  "Return the number of fluents in VARIABLE, one for each part of KIND. Return NIL if KIND is NIL."
   (and kind
        (let ((value (symbol-value variable)))
          (if (simple-vector-p value)
@@ -102,14 +104,14 @@ a fluent that is only pulsed, the quantity is the number of pulses."
 
 (defun plottable-text ()
   "Return a text about what can be plotted."
-  (format nil "~{~A~^, ~}; a fluent, such as robot-stopped* or hand-moved* 0; a function of a robot, ~
-               such as robot-x or (lambda (robot) ...)"
+  (format nil "~{~A~^, ~}; a fluent, such as robot-stopped* or hand-moved* 0; or a function of a ~
+               robot, such as robot-x or (lambda (robot) ...)"
           (mapcar #'quantity-name *named-quantities*)))
 
 (defun reject-plot (text)
   (let ((similar (nearest-name text (plottable-names (session-robot)))))
-    (reject-line "~A cannot be plotted~@[; did you mean ~A?~]~:*~:[.~;~] PLOT takes ~A." text similar
-                 (plottable-text))))
+    (reject-line "~A cannot be plotted~@[; did you mean ~A?~]~:*~:[.~;~] PLOT takes ~A."
+                 text similar (plottable-text))))
 
 (defun lambda-quantity (form text)
   "Return the quantity that the lambda expression FORM, typed as TEXT, computes."
@@ -140,7 +142,7 @@ a fluent that is only pulsed, the quantity is the number of pulses."
 ;;; PLOT.
 
 (defun write-plots (session)
-  (let ((all (current-plotted session *simulation* *prompt-robot*)))
+  (let ((all (current-plotted session *simulation* (name-of-robot-to-plot))))
     (if all
         (loop for plotted in all
               for number from 1
@@ -152,9 +154,6 @@ a fluent that is only pulsed, the quantity is the number of pulses."
                                                  (value-and-unit-text curve value) tick))
                                "no value yet"))))
         (format t "Nothing is plotted. PLOT takes ~A.~%" (plottable-text)))))
-
-(defun update-plots (session)
-  (follow-plots session *simulation* *prompt-robot*))
 
 (defun add-plot (session text)
   (let ((plotter (ensure-plotter session)) (quantity (find-quantity text)))
@@ -239,12 +238,9 @@ chooses the ticks that they show. Curves begin anew in forks and trials, and a r
     (:seeing)
     "Save the plots in FILE, replacing it."
   (session-robot)
-  (let ((charts (plotted-charts session *simulation* *prompt-robot* 720)))
+  (let ((charts (plotted-charts session *simulation* (name-of-robot-to-plot) 720))
+        (title (format nil "~(~A~) in ~(~A~), tick ~D" (name-of-robot-to-plot)
+                       (simulation-name *simulation*) (simulation-tick *simulation*))))
     (unless charts (reject-line "Nothing is plotted. PLOT speed plots the robot's speed."))
-    (format t "~A~%"
-            (native-name
-             (save-chart (time-charts-svg charts (format nil "~(~A~) in ~(~A~), tick ~D"
-                                                          *prompt-robot*
-                                                          (simulation-name *simulation*)
-                                                          (simulation-tick *simulation*)))
-                         (path-of-name file))))))
+    (format t "~A~%" (native-name (save-chart (path-of-name file)
+                                              (time-charts-svg charts title))))))

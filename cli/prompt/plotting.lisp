@@ -10,9 +10,9 @@
 
 (defstruct (quantity (:constructor make-quantity (name unit maker &optional user-code-p))
                      (:copier nil))
-  "A quantity that can be plotted. The function MAKER takes a value and a tick, NIL at the beginning,
-from which to continue. It returns a function of a robot and the present tick that returns the
-value. USER-CODE-P is true if that function may signal errors."
+  "A quantity that can be plotted. The function MAKER takes the value and the tick from which to
+continue, NIL at the beginning. It returns a function of a robot and the present tick that returns
+the value. USER-CODE-P is true if that function may signal errors."
   (name "" :type string :read-only t)
   (unit "" :type string :read-only t)
   (maker nil :type function :read-only t)
@@ -154,6 +154,15 @@ samples are taken while SHOWN-P is NIL. LOCK guards the curves and what observer
             (when (plotter-shown-p plotter)
               (take-samples plots simulation (plotter-lock plotter)))))))))
 
+(defun name-of-robot-to-plot ()
+  "Return the name of the robot that the prompt commands, or NIL if there is none."
+  (let ((robot (and *simulation* (or (robot-of-prompt) (first (simulation-robots *simulation*))))))
+    (and robot (robot-name robot))))
+
+(defun update-plots (session)
+  "Take samples of what SESSION plots in the present run."
+  (follow-plots session *simulation* (name-of-robot-to-plot)))
+
 (defun set-plots-shown (session shown-p)
   "Take samples of what SESSION plots only if SHOWN-P. After this, FOLLOW-PLOTS starts again."
   (setf (plotter-shown-p (ensure-plotter session)) (and shown-p t)))
@@ -204,8 +213,8 @@ samples are taken while SHOWN-P is NIL. LOCK guards the curves and what observer
        (format nil "ended~@[ at tick ~D~] by an error" (last-sample (plotted-series plotted)))))
 
 (defun plots-mark (session simulation robot)
-  "Return a value that represents the plots of SESSION in SIMULATION for the robot named ROBOT. It is
-EQUAL to an earlier value if they look the same."
+  "Return a value that represents the plots of SESSION in SIMULATION for the robot named ROBOT. It
+is EQUAL to an earlier value if they look the same."
   (let ((all (current-plotted session simulation robot)))
     (and all
          (with-lock ((plotter-lock (session-plotter session)))

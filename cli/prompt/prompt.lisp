@@ -51,7 +51,7 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
     (continue-in-next-run session))
   (setf (session-robot-name session) *prompt-robot*)
   (follow-simulation session)
-  (follow-plots session *simulation* *prompt-robot*))
+  (update-plots session))
 
 (defun run-next-line (session)
   "Read a line of SESSION and run it; at the end of input, end the session."

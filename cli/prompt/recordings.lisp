@@ -57,7 +57,7 @@ the run of the film unless it is the run SHOWN."
         unless (probe-file (path-of-name name)) return name))
 
 (defun recorded-journal (recording)
-  "Return the journal for the film of RECORDING. Signals BAD-LINE if it ends before the film begins."
+  "Return the journal for the film of RECORDING. Signals BAD-LINE if it ends before the film."
   (let* ((simulation (recording-simulation recording))
          (journal (asking (simulation) (journal-up-to-now simulation))))
     (when (< (journal-end journal) (recording-start recording))
@@ -70,8 +70,9 @@ the run of the film unless it is the run SHOWN."
 (defun save-recording (recording journal file hook)
   "Save the film of RECORDING in FILE. Call HOOK with ticks to report progress. Return the truename
 of FILE and the last tick of the film."
-  (let ((end (journal-end journal)) (*frame-hook* hook))
-    (values (apply #'save-animation journal (path-of-name (or file (unused-film-name recording end)))
+  (let* ((end (journal-end journal)) (*frame-hook* hook)
+         (path (path-of-name (or file (unused-film-name recording end)))))
+    (values (apply #'save-animation journal path
                    :from (recording-start recording) :until end
                    ;; A remark in the title says so if definitions have changed since.
                    :anyway t

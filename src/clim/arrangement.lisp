@@ -25,11 +25,12 @@
 (defconstant +section-top-margin+ 6
   "The distance from the top of a section to its first line, in pixels.")
 
-(define-constant +sections+ '(state designators cameras hands bins plan parameters)
+(define-constant +sections+ '(state designators cameras hands bins plots plan parameters)
   :test #'equal
   :documentation "The displays in the column beside the world, from top to bottom.")
 
-(define-constant +titled+ '(world state designators cameras hands bins plan parameters transcript)
+(define-constant +titled+
+    '(world state designators cameras hands bins plots plan parameters transcript)
   :test #'equal
   :documentation "The parts of the window that have titles.")
 
@@ -46,8 +47,9 @@ gets half of the height or more.")
   "The user's preferences for a window. LAYERS are the layers of its display of the world. COLOR-P
 is true if this display has colours. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in pixels;
 NIL means a size that suits the window. FOLDED lists sections that show only their title, and UNSEEN
-those of them that open by themselves when they have something to show.
-MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit the screen."
+those of them that open by themselves when they have something to show. ABSENT lists sections that
+take no room even for their title, as the parameters do while they are folded. MAGNIFICATION is the number of screen pixels per window pixel, or
+NIL to suit the screen."
   (layers *window-layers* :type list)
   (color-p t)
   (details-width nil :type (or null real))
@@ -55,6 +57,7 @@ MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit th
   (transcript-height nil :type (or null real))
   (folded '(designators cameras hands bins plan parameters) :type list)
   (unseen '(designators cameras hands bins plan) :type list)
+  (absent '(plots) :type list)
   (magnification nil :type (or null (integer 1))))
 
 (defun title-pane-name (section)
@@ -67,13 +70,15 @@ MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit th
 (defun folded-p (section preferences)
   (and (member section (preferences-folded preferences)) t))
 
+(defun absent-sections (preferences)
+  (append (preferences-absent preferences)
+          (and (folded-p 'parameters preferences) '(parameters))))
+
 (defun column-sections (preferences width)
-  "Return the sections of the column in a window WIDTH pixels wide. Parameters have no title there
-while they are folded."
+  "Return the sections of the column in a window WIDTH pixels wide."
   (remove-if (lambda (section)
-               (case section
-                 (plan (plan-column-p preferences width))
-                 (parameters (folded-p 'parameters preferences))))
+               (or (member section (absent-sections preferences))
+                   (and (eq section 'plan) (plan-column-p preferences width))))
              +sections+))
 
 (defun default-details-width (preferences width)
@@ -180,6 +185,9 @@ the designators. If neither is there, nobody gets them."
           append (section-and-title-places section left top width own)
           do (incf top (+ +title-height+ own)))))
 
+(defun absent-section-places (sections)
+  (loop for section in sections append (section-and-title-places section 0 0 0 0)))
+
 ;;; The whole.
 
 (defun plan-column-places (preferences width left top height down)
@@ -205,9 +213,7 @@ pixels high. The column of sections is DOWN pixels high."
             (section-column-places (column-sections preferences width) needs
                                    (preferences-folded preferences)
                                    (+ left plan) top column down)
-            (when (folded-p 'parameters preferences)
-              (list (list (title-pane-name 'parameters) left top 0 0)
-                    (list 'parameters left top 0 0))))))
+            (absent-section-places (absent-sections preferences)))))
 
 (defun transcript-places (width top bottom)
   "Return the places, from TOP to BOTTOM, of a splitter and the transcript below it."

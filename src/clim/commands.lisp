@@ -136,6 +136,9 @@ calls COMMAND. Return 8 if no button calls COMMAND."
 (define-window-command (com-layers "Layers") (window)
   (open-popup-below-bar window (layer-rows window) 'com-layers))
 
+(define-window-command (com-plots "Plots") (window)
+  (open-popup-below-bar window (plot-rows window) 'com-plots))
+
 (define-window-command (com-robots "Which robot") (window)
   (open-popup-below-bar window (robot-rows window) 'com-robots))
 

@@ -92,8 +92,19 @@ If only the heights needed now fit, return those."
           now
           most))))
 
+(defun update-absent-sections (window)
+  "Give the display of plots of WINDOW room if anything is plotted. Unfold it when it gets room."
+  (let ((preferences (window-preferences window))
+        (absent (if (anything-plotted-p window) '() '(plots))))
+    (unless (equal absent (preferences-absent preferences))
+      (setf (preferences-absent preferences) absent)
+      (when (and (null absent) (section-folded-p window 'plots))
+        (removef (preferences-folded preferences) 'plots)
+        (set-plots-folded window nil)))))
+
 (defun places-of-parts (layout)
   "Return the places of all parts of LAYOUT for the user's preferences and the sections' needs."
+  (update-absent-sections (clim:pane-frame layout))
   (let* ((window (clim:pane-frame layout))
          (shown (list (window-simulation window) (shown-robot-name window))))
     (unless (equal shown (shiftf (pane-shown layout) shown))
@@ -144,6 +155,9 @@ least height of the designators.")
   (:method ((pane parameter-pane) section width)
     (declare (ignore section width))
     (panel-height pane))
+  (:method ((pane plot-pane) section width)
+    (declare (ignore section width))
+    (plots-height pane))
   (:method ((pane detail-pane) section width)
     (if (window-robot (window-of pane))
         (max (cached-content-height pane (max 1 (- width +scroll-bar-width+)))
@@ -178,6 +192,7 @@ least height of the designators.")
             (if folded-p
                 (cons section (preferences-folded preferences))
                 (remove section (preferences-folded preferences)))))
+    (when (eq section 'plots) (set-plots-folded window folded-p))
     (rearrange window)))
 
 ;;; A section that has nothing to show at the start is folded. It opens by itself once, unless the
@@ -286,6 +301,7 @@ and the robot, if the run has several robots."
     (transcript "Commands")
     (plan "Plan")
     (parameters "Parameters")
+    (plots (plots-title window))
     (t (display-title (pane-display (pane-named window section))))))
 
 (defmethod pane-appearance ((pane title-pane))

@@ -68,6 +68,7 @@ that returns the title."
                             nil
                             ("Which robot ..." com-robots) ("Follow the robot" com-follow)
                             ("Names of all things" com-names) ("Layers ..." com-layers)
+                            ("Plots ..." com-plots)
                             ("Colours on or off" com-color)
                             nil
                             ("All larger" com-larger) ("All smaller" com-smaller)))

@@ -138,6 +138,7 @@ message says whether the run continues, and how to open another window."
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
     (setf (pane-fitting-p (pane-named window 'world)) t))
+  (call-with-plots-followed window)
   (update-title window)
   (request-refresh window))
 

@@ -20,6 +20,9 @@ are written with package prefixes. Manual B.")
                 #:task-image-look #:tree-image-rows #:tree-image-tasks #:tree-image-plans
                 #:plan-runner-tasks #:plan-runner-tick #:task-label #:task-state #:task-result
                 #:task-runner #:failure-text #:*plan-end-hooks*)
+  (:import-from :ars-magna.plots
+                #:+time-chart-height+ #:draw-time-charts #:sample-at #:sample-text
+                #:time-chart-series #:time-series-name)
   (:import-from :ars-magna.faces #:editor-server)
   (:import-from :ars-magna.rpl-pictures
                 #:draw-task-tree #:fold-mark #:fold-mark-serial #:draw-timeline-page

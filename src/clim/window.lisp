@@ -9,8 +9,8 @@
 (defparameter *window-parts*
   `((world world-pane) (state detail-pane :display :state)
     (designators designators-pane :display :designators) (cameras detail-pane :display :cameras)
-    (hands detail-pane :display :hands) (bins detail-pane :display :bins) (plan plan-pane)
-    (parameters parameter-pane)
+    (hands detail-pane :display :hands) (bins detail-pane :display :bins) (plots plot-pane)
+    (plan plan-pane) (parameters parameter-pane)
     (transcript transcript-pane) (interactor interactor-pane) (strip strip-pane) (bar bar-pane)
     (menus menu-pane)
     ,@(loop for section in +titled+

@@ -118,9 +118,9 @@ WRONG-ARGUMENT for OPERATOR if UNTIL is not a tick of JOURNAL."
                        (layers *picture-layers*) (in-color t) scale title part anyway)
   "Replay a run and save it in FILE as a film. Return the truename of FILE, or with SERIES a list of
 truenames. JOURNAL is a journal, the name of a journal file, or NIL for the journal of the current
-simulation. The film has a frame for the tick FROM, by default 0, and one after every EVERY ticks, up
-to the tick UNTIL, by default the end. By default EVERY is chosen so that the film has at most 600
-frames. RATE is the number of frames per second.
+simulation. The film has a frame for the tick FROM, by default 0, and one after every EVERY ticks,
+up to the tick UNTIL, by default the end. By default EVERY is chosen so that the film has at most
+600 frames. RATE is the number of frames per second.
 
 The name of FILE chooses the kind of film:
 - .html: a page that plays, stops and searches the run in any browser, without a network. The page

@@ -9,7 +9,7 @@
 ;;; axes. All charts share the ticks of the axis across. Charts are collected before they are drawn,
 ;;; because a curve may grow while it is drawn.
 
-(defconstant +time-chart-height+ 106 "The height of the chart of a curve, in pixels.")
+(defconstant +time-chart-height+ 96 "The height of the chart of a curve, in pixels.")
 (defconstant +time-chart-title-height+ 19 "The height of the title of a chart, in pixels.")
 (defconstant +value-marks-width+ 62 "The width of the marks to the left of a curve, in pixels.")
 
@@ -29,7 +29,8 @@ apart, and NOTE, a text."
 
 (defun sample-text (series tick value)
   "Return a text with the name of SERIES, VALUE and TICK."
-  (format nil "~A: ~A at tick ~D" (time-series-name series) (value-and-unit-text series value) tick))
+  (format nil "~A: ~A at tick ~D"
+          (time-series-name series) (value-and-unit-text series value) tick))
 
 (defmethod subject-title ((chart time-chart))
   (format nil "~A: ~A" (time-series-name (time-chart-series chart)) (time-chart-note chart)))

@@ -4,16 +4,16 @@
 
 (export '(make-time-series add-sample cut-time-series last-sample time-series-samples))
 
-;;; A time series keeps its samples at several resolutions. Level 0 has the newest samples, level 1 every
-;;; second sample, level 2 every fourth, and so on. Each level keeps +LEVEL-SIZE+ samples. When the
-;;; last level is full, another level is made, so the last level always reaches back to the first
-;;; sample. A time series of a million ticks has 12 levels and 100 kB.
+;;; A time series keeps its samples at several resolutions. Level 0 has the newest samples, level 1
+;;; those at every second tick, level 2 at every fourth, and so on. Each level keeps +LEVEL-SIZE+
+;;; samples. When the last level is full, another level is made, so the last level always reaches
+;;; back to the beginning. A time series of a million ticks has 12 levels and 100 kB.
 
 (defconstant +level-size+ 512 "The number of samples that each level of a time series keeps.")
 
 (defstruct (level (:constructor make-level (stride)) (:copier nil))
-  "The newest samples of a time series at ticks that STRIDE divides, COUNT of them, in two ring buffers
-that begin at START."
+  "The newest samples of a time series at ticks that STRIDE divides, COUNT of them, in two ring
+buffers that begin at START."
   (stride 1 :type (and fixnum (integer 1)) :read-only t)
   (start 0 :type (integer 0 (512)))
   (count 0 :type (integer 0 512))
@@ -66,7 +66,8 @@ chooses its colour."))
     (unless (zerop (mod tick (level-stride level))) (return))
     (add-to-level level tick value)
     (when (and (level-full-p level) (eq level (first (last (time-series-levels series)))))
-      (setf (time-series-levels series) (append (time-series-levels series) (list (make-next-level level))))
+      (setf (time-series-levels series)
+            (append (time-series-levels series) (list (make-next-level level))))
       (return))))
 
 (defun cut-time-series (series tick)

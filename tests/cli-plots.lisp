@@ -1,0 +1,112 @@
+;;;; cli-plots.lisp -- quantities over time at the prompt.
+
+(in-package :ars-magna.tests)
+
+(def-suite* cli-plots :in ars-magna)
+
+(defun ars-user::tick-of (robot) (run:simulation-tick (run:robot-simulation robot)))
+
+(defun ars-user::early (robot)
+  (if (> (ars-user::tick-of robot) 3) (error "It is late.") 7))
+
+(defun plots-listed (&rest lines)
+  "Return what PLOT lists after LINES, one string for each plot, with single blanks. Only the line
+STEP passes ticks."
+  (let ((mark "Plots show all ticks."))
+    (mapcar #'base:one-line
+            (rest (member mark (type-lines (append lines '("plot-ticks" "plot"))
+                                           :batch t :patient nil)
+                          :test #'equal)))))
+
+(test plot.samples-each-tick
+  (is (equal '("1 speed 0.8 m/tick at tick 3" "2 distance 2.4 m at tick 3"
+               "3 odometer-error 0 m at tick 3")
+             (plots-listed "plot speed" "plot distance" "plot odometer-error"
+                           "(begin-plan (interp-lambda () (seq (rpl-robot-go-forward 9) (wait-for nil))))"
+                           "step 3"))))
+
+(test plot.takes-functions-and-fluents
+  (is (equal '("1 tick-of 5 at tick 5" "2 (lambda (r) (> (robot-x r) 3)) 1 at tick 5"
+               "3 robot-place* 0 at tick 5" "4 hand-moved* 1 0 at tick 5"
+               "5 robot-stopped* 1 at tick 5")
+             (plots-listed "plot tick-of" "plot (lambda (r) (> (robot-x r) 3))"
+                           "plot robot-place*" "plot hand-moved* 1" "plot robot-stopped*"
+                           "(begin-plan (interp-lambda () (seq (rpl-robot-turn .3) (wait-for nil))))"
+                           "step 5"))))
+
+(test plot.does-not-count-as-reading-a-fluent
+  (in-studio (robot)
+    (let ((fluent (rpl:create-fluent "seen" 41)))
+      (is (= 41 (ars-magna.rpl.fluents:peek-fluent fluent)))
+      (is (= 42 (ars-magna.rpl.fluents:peek-fluent (ars-magna.rpl.lifted:+ fluent 1))))
+      (let ((unread (rpl:create-fluent "unread" 1)))
+        (ars-magna.rpl.fluents:peek-fluent unread)
+        (is (not (ars-magna.rpl.fluents:was-read-p unread)))))))
+
+(test plot.an-error-ends-one-curve
+  "It is reported once, and time goes on."
+  (multiple-value-bind (lines errors) (type-batch "plot early" "plot speed" "step 9" "plot")
+    (let ((text (joined lines)))
+      (is (= 1 errors))
+      (is (= 1 (occurrences "Error in the plot of early, which ends here: It is late." text)))
+      (is-true (has-words-p text "Tick 9." "ended at tick 3 by an error"
+                            "0 m/tick at tick 9")))))
+
+(test plot.refuses-what-is-no-number
+  (is-true (has-words-p (joined (type-batch "plot (lambda (r) 1e30)"))
+                        "Only numbers up to 1e15")))
+
+(test plot.can-be-removed
+  (is (equal '("1 distance 0 m at tick 1")
+             (plots-listed "plot speed" "plot distance" "plot tick-of" "plot 3 off"
+                           "plot SPEED off" "step 1")))
+  (is-true (has-words-p (joined (type-batch "plot speed" "plot off" "plot"))
+                        "Nothing is plotted")))
+
+(test plot.is-cut-by-a-rewind
+  (is (equal '("1 tick-of 6 at tick 6" "2 distance 1.5 m at tick 6")
+             (plots-listed "(keep-forks)" "step 3" "plot tick-of" "plot distance"
+                           "(begin-plan (interp-lambda () (seq (rpl-robot-go-forward 9) (wait-for nil))))"
+                           "step 6" "rewind 5" "step 2")))
+  (is (equal '("1 tick-of 4 at tick 4")
+             (plots-listed "(keep-forks)" "plot tick-of" "step 9" "rewind 5"))))
+
+(test plot.begins-anew-in-a-fork-and-continues-after-it
+  (let ((text (joined (type-lines '("(keep-forks)" "plot distance"
+                                    "(begin-plan (interp-lambda () (seq (rpl-robot-go-forward 9) (wait-for nil))))" "step 2" "fork" "step 3"
+                                    "plot" "fork off" "plot" "step 1" "plot")
+                                  :batch t :patient nil))))
+    (is-true (has-words-p text "distance                       1.5 m at tick 5"
+                          "distance                       1 m at tick 2"
+                          "distance                       1.5 m at tick 3"))))
+
+(test plot.does-not-change-the-run
+  (flet ((digest (&rest lines)
+           (car (last (apply #'type-batch (append lines '("go 3" "turn 1" "step 9"
+                                                          "(state-digest)")))))))
+    (is (equal (digest "step 2")
+               (digest "plot speed" "plot odometer-error" "plot robot-stopped*" "plot tick-of"
+                       "step 2")))))
+
+(test plot.saves-a-picture
+  (with-scratch-file (path "svg")
+    (let ((name (uiop:native-namestring path)))
+      (type-batch "plot tick-of" "step 40" (format nil "plot-picture ~A" name))
+      (is (mentions-p (uiop:read-file-string path) ">40</text>"))
+      (is (mentions-p (uiop:read-file-string path) ">butler in parlour, tick 40<"))
+      (type-batch "plot tick-of" "step 40" "plot-ticks 9" (format nil "plot-picture ~A" name))
+      (is (mentions-p (uiop:read-file-string path) ">32</text>"))
+      (is (not (mentions-p (uiop:read-file-string path) ">20</text>")))))
+  (is-true (has-words-p (complaint "plot-picture plots.svg") "Nothing is plotted"))
+  (is-true (has-words-p (complaint "plot-ticks none") "a number of ticks" "ALL")))
+
+(test plot.answers-wrong-words
+  (is-true (has-words-p (complaint "plot spede") "did you mean speed?" "or a function"))
+  (is-true (has-words-p (complaint "plot no-such-thing") "cannot be plotted." "odometer-error"))
+  (is-true (has-words-p (complaint "plot hand-moved*") "for each hand" "0 to 1"))
+  (is-true (has-words-p (complaint "plot hand-moved* 2") "for each hand" "0 to 1"))
+  (is-true (has-words-p (complaint "plot robot-place* 1") "one fluent"))
+  (is-true (has-words-p (complaint "plot 7") "7 cannot be plotted"))
+  (is-true (has-words-p (complaint "plot speed up") "too much"))
+  (is-true (has-words-p (complaint "plot setf") "cannot be plotted"))
+  (is-true (has-words-p (complaint "plot speed off") "speed is not plotted; nothing is")))
