@@ -72,11 +72,13 @@ function that returns its text."
   (call-in-directory
    (lambda (directory)
      (uiop:with-current-directory (directory)
-       (flet ((films () (mapcar #'file-namestring (directory (merge-pathnames "*.html" directory)))))
+       (flet ((films ()
+                (mapcar #'file-namestring (directory (merge-pathnames "*.html" directory)))))
          (type-batch "record on" "record cancel" "step 1")
          (is (null (films)))
          (dotimes (count 2)
-           (is-true (has-words-p (joined (type-batch "record on" "step 2")) "Film of ticks 0 to 2")))
+           (is-true (has-words-p (joined (type-batch "record on" "step 2"))
+                                 "Film of ticks 0 to 2")))
          (is (null (set-exclusive-or '("butler-000000-000002.html" "butler-000000-000002-2.html")
                                      (films) :test #'equal))))))))
 

@@ -8,13 +8,15 @@
   "Run LINES in the session of WINDOW, whose prompt has not begun. Its output is lost."
   (let ((session (window::window-session window))
         (time:*simulation* (window::window-simulation window))
-        (*standard-output* (make-broadcast-stream)))
+        (*standard-output* (make-broadcast-stream))
+        (*package* (find-package :ars-user)))
     (dolist (line lines) (cli::run-typed-line session line))))
 
 (defun plotted-window (window &rest lines)
-  "Run LINES in WINDOW, let 30 ticks pass, and return the pane of plots."
+  "Run LINES in WINDOW, let 30 ticks pass, and return the pane of plots, painted."
   (apply #'type-in-window window lines)
   (run:run-ticks 30)
+  (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
   (lay-out window 1000 900)
   (window::refresh window)
   (pane window 'window::plots))
@@ -45,7 +47,8 @@
     (let ((pane (plotted-window window "plot speed")))
       (window::handle-click pane :right 0 60)
       (let ((rows (rows-of-popup window)))
-        (dolist (text '("rewind-to 0" "plot speed off" "plot-picture studio-robot-plots-000030.svg"))
+        (dolist (text '("rewind-to 0" "plot speed off"
+                        "plot-picture studio-robot-plots-000030.svg"))
           (is (some (lambda (row) (mentions-p row text)) rows)))))))
 
 (test plot-pane.takes-no-samples-while-folded

@@ -20,7 +20,8 @@
       (is (= 100000 (first (last ticks)))))
     (is (equal (loop for tick from 99700 to 100000 collect tick) (ticks-kept series 99700)))
     (is (>= 10 (length (plots::time-series-levels series))) "memory grows with the logarithm")
-    (is (loop for (tick . value) in (plots:time-series-samples series) always (= value (* 2 tick))))))
+    (is (loop for (tick . value) in (plots:time-series-samples series)
+              always (= value (* 2 tick))))))
 
 (test time-series.samples-are-evenly-spaced
   "Whichever tick they begin at; but for the last, which is always there."

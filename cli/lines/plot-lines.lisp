@@ -6,11 +6,16 @@
 
 ;;; The quantities that have names.
 
+(defun zero-if-rounded (metres)
+  "Return METRES, a double-float, or 0 if METRES may be a rounding error."
+  (declare (type double-float metres))
+  (if (< metres 1d-9) 0d0 metres))
+
 (defun speed-now (robot tick)
   "Return how many metres ROBOT has driven in the tick TICK."
-  (let ((metres (if (= tick (robot-drove-tick robot)) (abs (robot-moved robot)) 0)))
-    ;; A wall stops a robot up to rounding errors.
-    (if (< metres 1d-9) 0 metres)))
+  (if (= (the fixnum tick) (the fixnum (robot-drove-tick robot)))
+      (zero-if-rounded (abs (robot-moved robot)))
+      0d0))
 
 (defun distance-function (metres tick)
   "Return a function that adds up the distance that a robot drives, from METRES at TICK or from 0."
@@ -24,7 +29,7 @@
   "Return the distance between the position of ROBOT and the estimate of its main odometer."
   (declare (ignore tick))
   (multiple-value-bind (x y) (odometer-estimate (robot-main-odometer robot))
-    (distance-to robot x y)))
+    (zero-if-rounded (distance-to robot x y))))
 
 (defun stateless-maker (function)
   "Return the maker of a quantity that FUNCTION, of a robot and a tick, returns."

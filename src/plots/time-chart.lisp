@@ -145,8 +145,8 @@ function from a time series to a text to show instead of its last value, or NIL.
   "Draw CHARTS below each other, each HEIGHT pixels high. Return the height of all charts."
   (loop for chart in charts
         for top from 0 by height
-        do (draw-time-chart canvas chart top height)
-        finally (return top)))
+        do (draw-time-chart canvas chart top height))
+  (* height (length charts)))
 
 (defun time-charts-svg (charts title)
   "Return CHARTS, which are 720 pixels wide, below TITLE as an SVG document."
