@@ -38,7 +38,7 @@
 (test pointing.writes-the-name-of-what-is-under-the-mouse
   (in-window (window robot)
     (let ((pane (painted-world window)))
-      (setf (window::window-layers window) '())
+      (setf (window::preferences-layers (window::window-preferences window)) '())
       (window::handle-hover pane 44 36)
       (is (equal '("pen") (names-in-window window)))
       (window::handle-hover pane 120 20)

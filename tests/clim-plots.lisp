@@ -103,5 +103,5 @@
       (type-in-window window "record cancel")
       (window::toggle-layer window :trail)
       (is (equal "record on trail" (choose "Record a film")))
-      (setf (window::window-layers window) '(:grid))
+      (setf (window::preferences-layers (window::window-preferences window)) '(:grid))
       (is (equal "record on bare grid legend title" (choose "Record a film"))))))

@@ -78,7 +78,7 @@ and return the label or whether the button is on."
   "Return the width of BUTTON in the tool bar of WINDOW, in pixels. If its label changes, there is
 room for both labels, so that the other parts of the tool bar stay in place."
   (if (stringp (button-label button))
-      (max 40 (button-width (button-text button window)))
+      (max 36 (button-width (button-text button window)))
       (button-width "Resume")))
 
 (defmethod pane-appearance ((pane bar-pane))

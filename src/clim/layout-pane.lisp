@@ -315,7 +315,7 @@ and the robot, if the run has several robots."
     (with-pane-canvas (canvas pane)
       (when (focused-section-p window section)
         (multiple-value-bind (width height) (pane-size pane)
-          (with-gcontext (draw-gcontext* :foreground (svref lightblue* 9))
+          (with-gcontext (draw-gcontext* :foreground +lit-color+)
             (draw-rectangle canvas draw-gcontext* 0 0 width height t))))
       (when foldable-p
         (draw-lines canvas draw-gcontext*

@@ -105,7 +105,7 @@ would be cut off. Record in PANE what was painted where."
   `(call-with-pane-canvas (lambda (,canvas) ,@body) ,pane))
 
 (defun button-width (text)
-  (+ 14 (label-width text)))
+  (+ 12 (label-width text)))
 
 (defun draw-button (canvas subject text lit-p x y width height)
   "Draw a button for SUBJECT with TEXT in its middle. Return the x coordinate of its right edge."

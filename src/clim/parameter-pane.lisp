@@ -13,7 +13,7 @@
 
 (defconstant +panel-head-height+ 42
   "The height of the buttons and the note above the list of parameters, in pixels.")
-(defconstant +value-width+ (* 7 +character-width+) "The width of a parameter's value, in pixels.")
+(defconstant +value-width+ 50 "The width of a parameter's value, in pixels.")
 (defconstant +step-button-width+ 15 "The width of a button that steps a value, in pixels.")
 
 (defstruct (parameter-row (:constructor make-parameter-row (parameter value)) (:copier nil))
@@ -160,16 +160,14 @@ the present value. The second value is true if a line that sets it still waits."
          (default (and (row-changed-p row)
                        (format nil "(~A)" (ars-magna.cli:parameter-value-text
                                            (parameter-default parameter)))))
-         (left (- x (* +character-width+ (1+ (length default))))))
-    (draw-glyphs canvas draw-gcontext* 14 (+ y 12)
-                 (cut (parameter-name parameter)
-                      (max 4 (floor (- left 20) +character-width+))))
+         (left (- x 8 (if default (label-width default) 0))))
+    (draw-label canvas 14 (+ y 12) (cut-label (parameter-name parameter) (- left 20)))
     (when default
       (draw-rectangle canvas draw-gcontext* 5 (+ y 6) 5 5 t)
-      (with-gcontext (draw-gcontext* :foreground (svref grey* 24))
-        (draw-glyphs canvas draw-gcontext* left (+ y 12) default)))
-    (with-gcontext (draw-gcontext* :foreground (if grey-p (svref grey* 32) black*))
-      (draw-glyphs canvas draw-gcontext* x (+ y 12) text))))
+      (with-gcontext (draw-gcontext* :foreground +secondary-text-color+)
+        (draw-label canvas left (+ y 12) default)))
+    (with-gcontext (draw-gcontext* :foreground (if grey-p +border-color+ black*))
+      (draw-label canvas x (+ y 12) text))))
 
 (defun draw-parameter-row (canvas pane row y)
   (let* ((width (content-width pane))
@@ -184,18 +182,18 @@ the present value. The second value is true if a line that sets it still waits."
 
 (defun draw-panel-row (canvas pane row y)
   (if (stringp row)
-      (draw-glyphs canvas draw-gcontext* 4 (+ y 12) (string-upcase row))
+      (draw-label canvas 4 (+ y 12) (string-capitalize row :end 1) :bold-p t)
       (draw-parameter-row canvas pane row y)))
 
 (defun draw-panel-head (canvas pane)
   "Draw the part of PANE that does not scroll: what holds now, and buttons that set all."
   (let ((simulation (window-simulation (window-of pane))) (x 4))
     (dolist (button (set-all-buttons pane)) (setf x (+ 5 (draw-plan-button canvas button x 3))))
-    (draw-glyphs canvas draw-gcontext* (+ x 4) 15
-                 (format nil "now: ~A" (parameters-summary
-                                        (parameter-values-in-force simulation))))
-    (with-gcontext (draw-gcontext* :foreground (svref grey* 24))
-      (draw-glyphs canvas draw-gcontext* 4 35 (scope-text simulation)))))
+    (draw-label canvas (+ x 4) 15
+                (format nil "now: ~A" (parameters-summary
+                                       (parameter-values-in-force simulation))))
+    (with-gcontext (draw-gcontext* :foreground +secondary-text-color+)
+      (draw-label canvas 4 35 (scope-text simulation)))))
 
 (defmethod paint ((pane parameter-pane))
   (multiple-value-bind (width height) (pane-size pane)

@@ -23,8 +23,7 @@
 
 (defconstant +gap-before-free+ 14
   "The distance on the slider from the highest rate to as fast as possible, in pixels.")
-(defconstant +rate-text-width+ (* 8 +character-width+)
-  "The width of the text with the rate beside the slider, in pixels.")
+(defconstant +rate-text-width+ 54 "The width of the text with the rate beside the slider, in pixels.")
 (defconstant +least-track-width+ 80 "The least width of the slider's track, in pixels.")
 (defconstant +greatest-track-width+ 240 "The greatest width of the slider's track, in pixels.")
 
@@ -79,16 +78,16 @@ below 1 gives no rate below +LOWEST-RATE+."
 
 (defun draw-track (canvas rate left width y)
   "Draw a track WIDTH pixels wide from LEFT on around Y, with its thumb at RATE unless that is NIL."
-  (with-gcontext (draw-gcontext* :foreground (svref grey* 30))
+  (with-gcontext (draw-gcontext* :foreground +border-color+)
     (draw-segments canvas draw-gcontext* (list left y (+ left width (- +gap-before-free+)) y))
     (dolist (mark (append +marked-rates+ '(:free)))
       (let ((x (+ left (track-offset-of-rate mark width))))
         (draw-segments canvas draw-gcontext* (list x (- y 3) x (+ y 3))))))
   (when rate
     (let ((x (+ left (track-offset-of-rate rate width) -4)))
-      (with-gcontext (draw-gcontext* :foreground (svref lightblue* 9))
+      (with-gcontext (draw-gcontext* :foreground +lit-color+)
         (draw-rectangle canvas draw-gcontext* x (- y 8) 8 16 t))
-      (with-gcontext (draw-gcontext* :foreground (svref grey* 30))
+      (with-gcontext (draw-gcontext* :foreground +border-color+)
         (draw-rectangle canvas draw-gcontext* x (- y 8) 8 16)))))
 
 (defun draw-rate-slider (canvas slider rate x width height)
@@ -96,9 +95,8 @@ below 1 gives no rate below +LOWEST-RATE+."
 and the width of its track."
   (let* ((left (+ x 8)) (track (- width 16 +rate-text-width+)))
     (with-subject (canvas slider)
-      (with-gcontext (draw-gcontext* :foreground (svref grey* 56))
+      (with-gcontext (draw-gcontext* :foreground +bar-color+)
         (draw-rectangle canvas draw-gcontext* x 0 width height t))
       (draw-track canvas rate left track (floor height 2))
-      (draw-glyphs canvas draw-gcontext* (+ left track 10) (+ (floor height 2) 4)
-                   (short-rate-text rate)))
+      (draw-label canvas (+ left track 10) (+ (floor height 2) 4) (short-rate-text rate)))
     (values left track)))
