@@ -40,6 +40,9 @@ samples are taken while SHOWN-P is NIL. LOCK guards the curves and what observer
   (runs (make-hash-table :test 'eq :weakness :key :synchronized t) :type hash-table :read-only t)
   (lock (make-lock "plots") :read-only t))
 
+(setf (documentation 'plotter-ticks 'function)
+      "Return the number of ticks that plots show, or NIL for all ticks.")
+
 (defun ensure-plotter (session)
   (or (session-plotter session) (setf (session-plotter session) (make-plotter))))
 

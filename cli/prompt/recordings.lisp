@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(recording-start recording-text))
+(export '(recording-text))
 
 ;;; A film is made from the journal of a run when the recording ends. Until then a recording is only
 ;;; a run and a tick, so it costs the run nothing, and a film that cannot be saved is not lost.

@@ -131,6 +131,10 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
 (setf (documentation 'session-errors 'function)
       "Return the number of errors so far: invalid lines, failed plans, and error messages, except
 error messages of a plan that continues."
+      (documentation 'session-recording 'function)
+      "Return the film that the session records, or NIL."
+      (documentation 'session-plotter 'function)
+      "Return what the session plots, or NIL if nothing was ever plotted."
       (documentation 'session-quiet-p 'function)
       "True if messages from commands of plans and programs are hidden. Can be set.")
 
