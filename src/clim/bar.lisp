@@ -44,7 +44,8 @@ and return the label or whether the button is on."
         (make-button "Back" #\B 'com-back "Go back ten ticks, and pause")
         (make-button "Fit" #\F 'com-fit "Show the whole map")
         (make-button "Follow" #\R 'com-follow "Keep the robot in view" 'view-follows-robot-p)
-        (make-button "Names" #\N 'com-names "Show or hide the names of all things" 'all-names-shown-p)
+        (make-button "Names" #\N 'com-names "Show or hide the names of all things"
+                     'all-names-shown-p)
         (make-button "Layers" #\L 'com-layers "Choose what the world shows")
         (make-button "Params" #\P 'com-parameters "Show and change the simulation parameters"
                      (lambda (window) (not (section-folded-p window 'parameters))))

@@ -183,8 +183,8 @@ show a window."
 ;;; event, perhaps for ever, and the picture would stand still until the mouse moves. So it checks
 ;;; once more when no other thread reads.
 
-;;; While another thread reads, CLX would check again and again without a pause, and keep a processor
-;;; busy while the X server paints.
+;;; While another thread reads, CLX would check again and again without a pause, and keep a
+;;; processor busy while the X server paints.
 
 (defvar *input-arrived-p* (constantly nil)
   "A function that returns true if this thread's awaited input from the X server has arrived.")
@@ -203,10 +203,14 @@ true when the awaited input has arrived."
 (defconstant +seconds-between-answer-checks+ 0.0005
   "The interval, in seconds, at which a thread checks whether another one has read its answer.")
 
+(defvar *answer-check* (make-semaphore "answer of the X server")
+  "A semaphore that is never signalled: threads pause by waiting for it.")
+
 (defun check-until-true (block why test &rest arguments)
   "Return when the function TEST returns true for ARGUMENTS. BLOCK is CLX's function for this."
   (declare (ignore block why))
-  (loop until (apply test arguments) do (sleep +seconds-between-answer-checks+)))
+  (loop until (apply test arguments)
+        do (wait-on-semaphore *answer-check* +seconds-between-answer-checks+)))
 
 (wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-x-server-input)
 (wrap-function (find-symbol "PROCESS-BLOCK" "XLIB") #'check-until-true)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(live-view make-live-view live-view-robot live-view-pointed))
+(export '(live-view make-live-view))
 
 ;;; Names of things at rest are like the lettering of a map. They depend only on things at rest, the
 ;;; map, the scale and the layers. A name keeps its place until another thing at rest, or a mark
@@ -15,26 +15,24 @@
 (defconstant +resting-mark-tolerance+ 3
   "A mark that moves by less than this number of pixels is at rest.")
 
-(defstruct (live-view (:constructor make-live-view ()) (:copier nil))
-  "What the successive pictures of a world in a window have in common. ROBOT is the name of the
-robot that is drawn as a disc, or NIL. POINTED is the thing, or the name of the robot, that the
-mouse points at, or NIL: its name is written whatever layers are shown."
-  (robot nil)
-  (pointed nil)
-  ;; The snapshot of the last picture, and when things and robots moved last, by owner.
-  (snapshot nil)
-  (moves (make-hash-table :test 'eq :weakness :key) :type hash-table :read-only t)
-  ;; The marks in the last picture, pairs (box . tick): how long they have been there.
-  (marks '() :type list)
-  ;; What the names of things at rest were placed for, and these names.
-  (basis '() :type list)
-  (names '() :type list)
-  ;; Indices of the label targets at rest: their boxes, the targets, and their names.
-  (bodies (make-box-index) :type box-index)
-  (targets (make-box-index) :type box-index)
-  (covered (make-box-index) :type box-index)
-  ;; All placed names of the last picture, by owner.
-  (places (make-hash-table :test 'eq :weakness :key) :type hash-table :read-only t))
+(define-record (live-view (:constructor make-live-view ()
+                              "Return a new live view, in which no name has a place yet."))
+  "A live view: what the successive pictures of a world in a window have in common."
+  (robot nil t "the name of the robot that is drawn as a disc, or NIL. Can be set" :writable :export)
+  (pointed nil t "the thing, or the name of the robot, that the mouse points at, or NIL. Its name is
+written whatever layers are shown. Can be set" :writable :export)
+  (snapshot nil t "the snapshot of the last picture" :writable)
+  (moves (make-hash-table :test 'eq :weakness :key) hash-table
+         "the ticks at which things and robots moved last, by owner")
+  (marks '() list "pairs (box . tick) of the marks in the last picture, since when they are there"
+         :writable)
+  (basis '() list "what the names of things at rest were placed for" :writable)
+  (names '() list "the names of things at rest" :writable)
+  (bodies (make-box-index) box-index "an index of the boxes of things at rest" :writable)
+  (targets (make-box-index) box-index "an index of the label targets of things at rest" :writable)
+  (covered (make-box-index) box-index "an index of the names of things at rest" :writable)
+  (places (make-hash-table :test 'eq :weakness :key) hash-table
+          "the placed names of the last picture, by owner"))
 
 (defun label-target-owner (target)
   "Return the thing, or the name of the robot, of TARGET."
@@ -250,8 +248,7 @@ name covers others."
                                   nil))))))
 
 (defun place-names-above (view snapshot layers images marks per-character)
-  "Return the names of robots and of IMAGES, moving things, in SNAPSHOT, and of what the mouse points
-at."
+  "Return the names of robots and of IMAGES, moving things, and of what the mouse points at."
   (let* ((targets (append (robot-label-targets (snapshot-robots snapshot) (live-view-robot view))
                           (label-targets-by-size images)))
          (placement (placement-above-names view snapshot layers targets marks))

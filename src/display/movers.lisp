@@ -176,8 +176,12 @@ robot in the list of robots of its world."
 (defconstant +least-disc-radius+ 10 "The least radius of the disc of a robot, in pixels.")
 
 (defun disc-radius (image robots)
-  "Return the radius in pixels of the disc that shows the robot of IMAGE, one of ROBOTS."
-  (max +least-disc-radius+ (* 5/4 (ring-radius image robots))))
+  "Return the radius in pixels of the disc that shows the robot of IMAGE, one of ROBOTS. If other
+robots are at the same place, the disc is as large as the ring would be, to tell them apart."
+  (let ((radius (ring-radius image robots)))
+    (if (= 1 (count-coinciding-rings image robots))
+        (max +least-disc-radius+ (* 5/4 radius))
+        radius)))
 
 (defun drawn-radius (image robots shown)
   "Return the radius in pixels of the robot of IMAGE, one of ROBOTS. It is drawn as a disc if its

@@ -220,8 +220,8 @@ because ways would overlap there.")
 
 ;;; Trails.
 
-;;; In a window only the newest part of a trail is drawn, with few points, so that a long trail takes
-;;; no more time than a short one and does not hide the map.
+;;; In a window only the newest part of a trail is drawn, with few points. So a long trail takes no
+;;; more time than a short one, and does not hide the map.
 
 (defvar *drawn-trail-metres* nil
   "The length in metres of the newest part of each trail that is drawn, or NIL for all of it.")
