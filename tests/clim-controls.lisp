@@ -71,7 +71,7 @@
     (let ((bar (pane window 'window::bar)))
       (time:set-rate 7 simulation)
       (window::refresh window)
-      (is (member 7 (window::pane-painted bar)))
+      (is (member 7 (second (window::pane-painted bar))))
       (is (mentions-p (window::hover-text bar (slider-x bar 7) 12) "7 ticks per second")))))
 
 (test slider.in-a-trial-one-line-sets-the-rate

@@ -46,7 +46,8 @@
   (in-window (window robot)
     (let ((pane (plotted-window window "plot speed")))
       (window::handle-click pane :right 0 60)
-      (let ((rows (rows-of-popup window)))
+      (let ((rows (cl:mapcar #'whole-row-text
+                             (window::pane-rows (window::window-popup window)))))
         (dolist (text '("rewind-to 0" "plot speed off"
                         "plot-picture studio-robot-plots-000030.svg"))
           (is (some (lambda (row) (mentions-p row text)) rows)))))))
@@ -89,6 +90,8 @@
 (test recording.is-in-the-menu-and-in-the-status-strip
   (in-window (window robot)
     (lay-out window 1000 900)
+    (setf (window::preferences-layers (window::window-preferences window))
+          display:*picture-layers*)
     (flet ((choose (text)
              (open-menu-called window "Window")
              (choose-in-menu window text)
