@@ -52,7 +52,9 @@ no line style; setting one takes time."
 (defun extend-bounding-box-over-points (canvas points)
   (when (canvas-reach canvas)
     (loop for (x y) on points by #'cddr
-          do (extend-bounding-box canvas x y x y))))
+          minimize x into left minimize y into top
+          maximize x into right maximize y into bottom
+          finally (when points (extend-bounding-box canvas left top right bottom)))))
 
 ;;; Painting.
 

@@ -18,7 +18,8 @@
 (define-record (live-view (:constructor make-live-view ()
                               "Return a new live view, in which no name has a place yet."))
   "A live view: what the successive pictures of a world in a window have in common."
-  (robot nil t "the name of the robot that is drawn as a disc, or NIL. Can be set" :writable :export)
+  (robot nil t "the name of the robot that is drawn as a disc, or NIL. Can be set"
+         :writable :export)
   (pointed nil t "the thing, or the name of the robot, that the mouse points at, or NIL. Its name is
 written whatever layers are shown. Can be set" :writable :export)
   (snapshot nil t "the snapshot of the last picture" :writable)
