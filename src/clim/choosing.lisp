@@ -170,7 +170,8 @@ box LEFT ... BOTTOM. Keys choose objects in the order of these numbers.")
   "Open the context menu of the object that is chosen or selected in PANE. Press a chosen button."
   (let ((box (or (chosen-box pane) (selected-box pane))))
     (cond ((null box)
-           (show-hint (window-of pane) "Nothing is chosen here. The keys > and < choose an object."))
+           (show-hint (window-of pane)
+                      "Nothing is chosen here. The keys > and < choose an object."))
           ((typep (first box) '(or button fold-mark)) (click-chosen pane))
           (t (apply #'open-menu-of-box pane box)))))
 

@@ -272,7 +272,8 @@ visible part begins, the length of the visible part, and the length of the conte
   (when (scrollable-p pane)
     (multiple-value-bind (width height) (pane-size pane)
       (multiple-value-bind (top bottom) (thumb-bounds pane)
-        (clim:draw-rectangle* pane (- width +scroll-bar-width+) 0 width height :ink (clim-ink +bar-color+))
+        (clim:draw-rectangle* pane (- width +scroll-bar-width+) 0 width height
+                              :ink (clim-ink +bar-color+))
         (clim:draw-rectangle* pane (- width +scroll-bar-width+ -2) top (- width 2) bottom
                               :ink (clim-ink +thumb-color+))))))
 

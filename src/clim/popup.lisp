@@ -75,7 +75,8 @@ check box, else a function that returns true if the box is ticked."
               for row in (pane-rows pane)
               for y from 0 by +row-height+
               do (draw-row canvas row y width more-x (eq row (pane-pointed pane))))))
-    (clim:draw-rectangle* pane 0 0 (1- width) (1- height) :filled nil :ink (clim-ink +border-color+))))
+    (clim:draw-rectangle* pane 0 0 (1- width) (1- height)
+                          :filled nil :ink (clim-ink +border-color+))))
 
 (defun repaint-popup-if-covered (pane)
   "Paint the popup again if it is open and the painting of PANE may have covered it."

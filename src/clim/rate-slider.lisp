@@ -23,7 +23,7 @@
 
 (defconstant +gap-before-free+ 14
   "The distance on the slider from the highest rate to as fast as possible, in pixels.")
-(defconstant +rate-text-width+ 54 "The width of the text with the rate beside the slider, in pixels.")
+(defconstant +rate-text-width+ 54 "The width of the rate beside the slider, in pixels.")
 (defconstant +least-track-width+ 80 "The least width of the slider's track, in pixels.")
 (defconstant +greatest-track-width+ 240 "The greatest width of the slider's track, in pixels.")
 

@@ -174,7 +174,8 @@
 
 (defun owner-at-mouse (pane)
   "Return the thing, or the name of the robot, that the mouse points at in PANE, or NIL."
-  (destructuring-bind (&optional pointed x y text) (pointer-pointed (window-pointer (window-of pane)))
+  (destructuring-bind (&optional pointed x y text)
+      (pointer-pointed (window-pointer (window-of pane)))
     (declare (ignore text))
     (let ((subject (and (eq pane pointed) (first (subjects-under pane x y)))))
       (typecase subject
