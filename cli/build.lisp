@@ -305,6 +305,8 @@ and try again. If the second try fails, too, exit with status 2."
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)
   (uiop:symbol-call :ars-magna.cli :mark-process-as-own)
+  ;; The core keeps the streams of this process.
+  (when *progress-stream* (setf *error-output* (shiftf *progress-stream* nil)))
   (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE")
                             :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
 

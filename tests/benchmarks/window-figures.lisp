@@ -258,7 +258,11 @@ their things have not."
                                   ,@display:*window-layers*)
                                  ("office, 100 ticks/s, no names"
                                   ,@(remove :mover-names display:*window-layers*)))
-        do (client:run-in-window window (lambda () (setf (window::preferences-layers (window::window-preferences window)) layers)))
+        do (client:run-in-window window
+                                 (lambda ()
+                                   (setf (window::preferences-layers
+                                          (window::window-preferences window))
+                                         layers)))
            (sleep 1)
            (say-names name window)))
 
