@@ -15,6 +15,7 @@
    ;; The most pixels that each section has needed, as (section pixels), and what was shown then.
    (needed :initform '() :accessor pane-needed)
    (shown :initform nil :accessor pane-shown))
+  (:default-initargs :background (clim-ink +outside-color+))
   (:documentation "The pane that holds all parts of the window."))
 
 (defun pane-preferences (layout) (window-preferences (clim:pane-frame layout)))
