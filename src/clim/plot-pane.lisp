@@ -46,10 +46,10 @@
 
 (defun follow-plots-in-thread (window)
   "Let samples be taken for the plots of WINDOW. A thread does this, because a tick may be running."
-  (start-thread (lambda () (call-with-plots-followed window))
+  (start-thread (lambda () (follow-plots-now window))
                 (format nil "plots of ~A" (shown-robot-name window))))
 
-(defun call-with-plots-followed (window)
+(defun follow-plots-now (window)
   (let ((simulation (window-simulation window)))
     (when simulation
       (let ((*message-queue* (simulation-messages simulation)))
