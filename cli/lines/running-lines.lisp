@@ -85,7 +85,8 @@
 (define-line "RATE" (session (x :rate "a number of ticks per second, or free" :optional))
     (:running)
     "Set the rate of a live simulator. Without a rate, show the rate and the tick. No ticks pass
-while the simulator is idle: nothing moves by itself in its world, and no command was given."
+while the simulator is idle: nothing moves by itself in its world, and no command was given. At the
+rate FREE, no ticks pass either while only things move: they would pass too fast to be seen."
   (let ((simulation (current-simulation)))
     (when x
       (if (session-trial session)

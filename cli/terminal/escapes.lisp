@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(painted-spans unpainted-text text-broken-at-blanks char-columns))
+(export '(paint painted-spans unpainted-text text-broken-at-blanks char-columns))
 
 ;;; Only this file has escape codes, those of all present terminals. Colours are the sixteen that
 ;;; users choose themselves, to suit the background; white and black are left for plain text.

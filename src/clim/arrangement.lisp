@@ -25,6 +25,8 @@
 (defconstant +section-top-margin+ 6
   "The distance from the top of a section to its first line, in pixels.")
 
+(defconstant +section-bottom-margin+ 4 "The empty pixels below the last line of a section.")
+
 (define-constant +sections+ '(state designators cameras hands bins plots plan parameters)
   :test #'equal
   :documentation "The displays in the column beside the world, from top to bottom.")
@@ -81,18 +83,10 @@ number of screen pixels per window pixel, or NIL to suit the screen."
                    (and (eq section 'plan) (plan-column-p preferences width))))
              +sections+))
 
-(defun default-details-width (preferences width)
-  "Return the default width of the column of sections in a window WIDTH pixels wide. The column is
-wider if it shows plans or parameters, because these have long lines."
-  (if (and (folded-p 'parameters preferences)
-           (or (folded-p 'plan preferences) (plan-column-p preferences width)))
-      (clamp (floor width 3) 200 360)
-      (clamp (floor (* 9 width) 20) 200 400)))
-
 (defun details-width (preferences width)
   "Return the width in pixels of the column of sections in a window WIDTH pixels wide."
   (let ((wanted (or (preferences-details-width preferences)
-                    (default-details-width preferences width))))
+                    (clamp (floor (* 3 width) 8) 200 400))))
     (clamp (round wanted) 120 (max 120 (- width 160)))))
 
 (defun plan-width (preferences width)

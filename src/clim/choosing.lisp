@@ -50,6 +50,23 @@
          (place (or (position (window-focus window) panes) (1- (length panes)))))
     (give-keys-to (nth (mod (+ place step) (length panes)) panes))))
 
+;;; Escape.
+
+(defun clear-selection (window)
+  "Select nothing in WINDOW. Return true if something was selected."
+  (when (window-selection window)
+    (select-subject window nil)
+    t))
+
+(defun close-by-escape (window)
+  "Close the popup of WINDOW. Without one, clear the selection, or close the panel of parameters.
+Return true if something was closed or cleared."
+  (or (close-popup window)
+      (clear-selection window)
+      (unless (section-folded-p window 'parameters)
+        (fold-section window 'parameters)
+        t)))
+
 ;;; Arrows.
 
 (defgeneric handle-arrow (pane dx dy)

@@ -98,11 +98,11 @@ other than a suggestion."
   (+ (length (suggestions-wanted pane)) (rows-of-input pane)))
 
 (defun rows-of-input (pane)
-  "Return the number of rows of the input line of PANE and the note above it."
+  "Return the number of rows of the input line of PANE, with the row above it, which notes use."
   (destructuring-bind (&optional label (text "") (point 0) note &rest ink)
       (interactor-contents pane)
-    (declare (ignore ink))
-    (+ (if note 1 0)
+    (declare (ignore note ink))
+    (+ 1
        (length (ars-magna.cli:visible-rows-of-line (ars-magna.cli:unpainted-text (or label "")) text
                                                    point
                                                    (columns-and-rows pane) 1000)))))
@@ -151,7 +151,7 @@ other than a suggestion."
         (when note
           (paint-glyphs-at-column canvas (cut note (max 4 (columns-and-rows pane))) 0
                                   (+ 14 (* top +line-height+)) ink))
-        (when label (paint-input-line canvas pane label text point (if note (1+ top) top)))))))
+        (when label (paint-input-line canvas pane label text point (1+ top)))))))
 
 ;;; Keys.
 
@@ -210,7 +210,7 @@ other than a suggestion."
       (cond ((and control-p shift-p (is-p #\c)) #'copy-text)
             ((and control-p (is-p #\v)) (lambda (window) (paste-text window :clipboard)))
             ((and shift-p (eq name :insert)) (lambda (window) (paste-text window :primary)))
-            ((eq name :escape) #'close-popup)
+            ((eq name :escape) #'close-by-escape)
             ((eq name :f10) #'toggle-first-menu)
             ((eq name :prior) (lambda (window) (scroll-page (pane-named window 'transcript) -1)))
             ((eq name :next) (lambda (window) (scroll-page (pane-named window 'transcript) 1)))))))

@@ -151,8 +151,10 @@ least height of the designators.")
   ;; Tasks come and go while a plan runs. If their room changed with that, other displays would move
   ;; from under the mouse. So plans get what the others leave, at least half of it.
   (:method ((pane plan-pane) section width)
-    (declare (ignore section width))
-    10000)
+    (declare (ignore width))
+    (if (plan-running-p (window-simulation (window-of pane)))
+        10000
+        (max (pane-extent pane) (initial-height section))))
   (:method ((pane parameter-pane) section width)
     (declare (ignore section width))
     (panel-height pane))
@@ -161,7 +163,8 @@ least height of the designators.")
     (plots-height pane))
   (:method ((pane detail-pane) section width)
     (if (window-robot (window-of pane))
-        (max (cached-content-height pane (max 1 (- width +scroll-bar-width+)))
+        (max (+ +section-bottom-margin+
+                (cached-content-height pane (max 1 (- width +scroll-bar-width+))))
              (if (eq section 'designators) (initial-height section) 0))
         (initial-height section))))
 
@@ -341,5 +344,5 @@ and the robot, if the run has several robots."
            (mark-section-seen window section)
            (fold-section window section (not (section-folded-p window section))))
           ((eq section 'world)
-           (multiple-value-bind (x y) (position-in-parent pane x y)
+           (multiple-value-bind (x y) (position-in-parent pane x +title-height+)
              (open-popup window (robot-rows window) x y))))))

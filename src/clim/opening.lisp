@@ -138,7 +138,7 @@ message says whether the run continues, and how to open another window."
   (unless (eq simulation (window-simulation window))
     (watch-simulation (window-watcher window) simulation)
     (setf (pane-fitting-p (pane-named window 'world)) t))
-  (call-with-plots-followed window)
+  (follow-plots-now window)
   (update-title window)
   (request-refresh window))
 

@@ -65,8 +65,8 @@ below 1 gives no rate below +LOWEST-RATE+."
 
 (defun rate-hover-text (rate)
   (if rate
-      (format nil "Rate: ~:[~A ticks per second~;as fast as possible~*~]. Drag, click or turn the ~
-                   mouse wheel to change it (keys: - and +)"
+      (format nil "Rate: ~:[~A ticks per second~;as fast as possible, while a command or plan is ~
+                   under way~*~]. Drag, click or turn the mouse wheel to change it (keys: - and +)"
               (eq rate :free) (and (realp rate) (number-text rate)))
       +no-rate-text+))
 

@@ -19,7 +19,10 @@
 (defun call-guarded-command (window title function)
   (handler-case (funcall function)
     (error (condition)
-      (write-in-window window "*ERROR* -> ~A: ~A.~%" title (one-line-text condition)))))
+      (write-in-window window "~A~%"
+                       (ars-magna.cli:paint (format nil "*ERROR* -> ~A: ~A." title
+                                                    (one-line-text condition))
+                                            :red)))))
 
 (defmacro with-guarded-command ((window title) &body body)
   "Run BODY, which executes the command TITLE. If BODY signals an error, print it in WINDOW."
