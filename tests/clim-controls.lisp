@@ -320,6 +320,7 @@ the number of errors."
       (window::handle-click pane :left 50 20)
       (is (equal (list (window::suggestion-line (second suggestions))) (lines-given window)))
       (window::write-entered-line (window::window-transcript window) "Robot> that")
+      (window::refresh window)
       (is (equal (remove (second suggestions) suggestions) (window::suggestions-in-view pane))))))
 
 (test suggestions.go-when-the-user-enters-a-line-and-leave-no-gap

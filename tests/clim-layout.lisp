@@ -171,7 +171,7 @@
         for pane = (pane window section)
         for height = (nth-value 1 (window::pane-size pane))
         always (funcall (if (eq section 'window::designators) #'<= #'=)
-                        (window::pane-extent pane) height)))
+                        (+ window::+section-bottom-margin+ (window::pane-extent pane)) height)))
 
 (test layout.displays-have-room-for-what-they-show-of-another-robot
   "MARVIN has three cameras, GOFER one; also after a display has been folded away meanwhile."

@@ -58,10 +58,12 @@ ANYWAY saves the film even if definitions have changed since the run began."
 ;;; RECORD.
 
 (defun record-on (session what)
-  (if (session-recording session)
-      (reject-line "RECORD off first: this prompt is ~A. RECORD cancel discards that film."
-                   (recording-text session))
-      (begin-recording session (picture-options what "RECORD on")))
+  (when (session-recording session)
+    (reject-line "RECORD off first: this prompt is ~A. RECORD cancel discards that film."
+                 (recording-text session)))
+  (when (search ".html" what :test #'char-equal)
+    (reject-line "RECORD on takes no file. RECORD off FILE saves the film in a file."))
+  (begin-recording session (picture-options what "RECORD on"))
   (format t "R~A. RECORD off saves the film.~%" (subseq (recording-text session) 1)))
 
 (defun record-off (session file)

@@ -204,7 +204,7 @@ number of pulses is plotted. In place of a truth value, 1 is true and 0 is NIL."
 each tick. After an error in the function its curve ends; time goes on."
      "PLOT speed off removes a plot, PLOT 2 off the second plot, PLOT off all plots. PLOT lists
 the plots."
-     "A window shows the plots beside the world. PLOT-PICTURE saves them in a file; PLOT-TICKS
+     "A window shows the plots of its own prompt. PLOT-PICTURE saves them in a file; PLOT-TICKS
 chooses the ticks that they show. Curves begin anew in forks and trials, and a rewind cuts them."
      "Older samples are kept at longer intervals, at least every 512th part of the curve.")
     "Plot a quantity over time."

@@ -36,7 +36,7 @@
   :test #'equal
   :documentation "The parts of the window that have titles.")
 
-(define-constant +greedy-sections+ '(parameters plan)
+(define-constant +greedy-sections+ '(parameters plots plan)
   :test #'equal
   :documentation "The sections that mostly need more height than there is. The first that is open
 gets half of the height or more.")
@@ -86,7 +86,7 @@ number of screen pixels per window pixel, or NIL to suit the screen."
 (defun details-width (preferences width)
   "Return the width in pixels of the column of sections in a window WIDTH pixels wide."
   (let ((wanted (or (preferences-details-width preferences)
-                    (clamp (floor (* 3 width) 8) 200 400))))
+                    (clamp (floor (* 9 width) 20) 200 400))))
     (clamp (round wanted) 120 (max 120 (- width 160)))))
 
 (defun plan-width (preferences width)
@@ -115,12 +115,13 @@ they are open, get the rest. Otherwise each gets a fair share."
 
 (defun divide-scarce-height (needs height)
   "Divide HEIGHT, which is less than NEEDS. The first of the greedy sections gets what it needs, up
-to half of HEIGHT, or more if the others leave more. The others get fair shares."
+to half of HEIGHT, or more if the others leave more. The others get fair shares, at least a line."
   (let* ((greedy (some (lambda (section) (find section needs :key #'first)) +greedy-sections+))
          (others (remove greedy needs)))
     (if (and greedy others)
         (let ((share (min (second greedy)
-                          (max (floor height 2)
+                          (max (min (floor height 2)
+                                    (- height (* (height-of-whole-lines 0) (length others))))
                                (- height (reduce #'+ others :key #'second))))))
           (cons (list (first greedy) share) (divide-height others (- height share))))
         (divide-height-fairly needs height))))

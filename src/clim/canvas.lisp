@@ -130,12 +130,25 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
         (draw-characters canvas gcontext x y string)
         (paint-each-character canvas gcontext x y string))))
 
+(defgeneric colored-text-p (port)
+  (:documentation "True if PORT draws text in the right colours. McCLIM does so only on screens of
+24 bits per pixel or more.")
+  (:method (port) (declare (ignore port)) t)
+  (:method ((port clim-clx:clx-port))
+    (let ((screen (xlib:display-default-screen (clim-clx:clx-port-display port))))
+      (<= 24 (xlib:screen-root-depth screen)))))
+
+(defun text-ink (canvas gcontext)
+  (if (colored-text-p (clim:port (canvas-medium canvas)))
+      (clim-ink (gcontext-foreground gcontext))
+      clim:+black+))
+
 (defun column-text-style (canvas)
   (text-style :fix :roman +column-font-size+ (canvas-magnification canvas)))
 
 (defun draw-characters (canvas gcontext x y string &optional (style (column-text-style canvas)))
   (clim:draw-text* (canvas-medium canvas) string x y
-                   :text-style style :ink (clim-ink (gcontext-foreground gcontext))))
+                   :text-style style :ink (text-ink canvas gcontext)))
 
 (defun text-style-for-character (canvas character)
   "Return the text style to draw CHARACTER in on CANVAS. Say so in the window if there is no font."
@@ -169,7 +182,7 @@ drawn to stay inside the box X, Y, WIDTH, HEIGHT."
                             :align-x (ecase anchor (:start :left) (:middle :center) (:end :right))
                             :text-style (text-style :sans-serif (if bold-p :bold :roman) size
                                                     (canvas-magnification canvas))
-                            :ink (clim-ink (gcontext-foreground gcontext))))
+                            :ink (text-ink canvas gcontext)))
           (t (paint-each-character canvas gcontext left y string)))))
 
 (defmethod character-width ((canvas clim-canvas) size)

@@ -78,8 +78,8 @@ other than a suggestion."
 
 (defun suggestions-in-view (pane)
   "Return those of the suggestions of PANE for which it has room above the input line."
-  (let ((room (- (nth-value 1 (columns-and-rows pane)) (rows-of-input pane)))
-        (suggestions (suggestions-wanted pane)))
+  (let* ((suggestions (suggestions-wanted pane))
+         (room (- (nth-value 1 (columns-and-rows pane)) (rows-of-input pane suggestions))))
     (subseq suggestions 0 (clamp room 0 (length suggestions)))))
 
 (defun try-suggestion (pane suggestion)
@@ -95,14 +95,20 @@ other than a suggestion."
   (subject-description (suggestion-at pane y)))
 
 (defun needed-rows (pane)
-  (+ (length (suggestions-wanted pane)) (rows-of-input pane)))
+  (let ((suggestions (suggestions-wanted pane)))
+    (+ (length suggestions) (rows-of-input pane suggestions))))
 
-(defun rows-of-input (pane)
-  "Return the number of rows of the input line of PANE, with the row above it, which notes use."
+(defun note-rows (note suggestions)
+  "Return the number of rows between SUGGESTIONS and the input line. Without suggestions, the row
+for NOTE is there even if NOTE is NIL, so that the input line does not move."
+  (if (or note (null suggestions)) 1 0))
+
+(defun rows-of-input (pane suggestions)
+  "Return the number of rows of PANE below SUGGESTIONS: those of the note and of the input line."
   (destructuring-bind (&optional label (text "") (point 0) note &rest ink)
       (interactor-contents pane)
-    (declare (ignore note ink))
-    (+ 1
+    (declare (ignore ink))
+    (+ (note-rows note suggestions)
        (length (ars-magna.cli:visible-rows-of-line (ars-magna.cli:unpainted-text (or label "")) text
                                                    point
                                                    (columns-and-rows pane) 1000)))))
@@ -146,12 +152,14 @@ other than a suggestion."
 
 (defmethod paint ((pane interactor-pane))
   (with-pane-canvas (canvas pane)
-    (let ((top (paint-suggestions canvas pane (suggestions-in-view pane))))
+    (let* ((suggestions (suggestions-in-view pane))
+           (top (paint-suggestions canvas pane suggestions)))
       (destructuring-bind (&optional label text point note ink) (interactor-contents pane)
         (when note
           (paint-glyphs-at-column canvas (cut note (max 4 (columns-and-rows pane))) 0
                                   (+ 14 (* top +line-height+)) ink))
-        (when label (paint-input-line canvas pane label text point (1+ top)))))))
+        (when label
+          (paint-input-line canvas pane label text point (+ top (note-rows note suggestions))))))))
 
 ;;; Keys.
 

@@ -34,9 +34,11 @@
     (multiple-value-bind (width height) (screen-size pane)
       (clim:make-space-requirement
        :width (min (* magnification (first +first-size+)) (or width 10000))
-       :min-width 320 :max-width clim:+fill+
+       :min-width (min (* magnification (first +smallest-size+)) (or width 10000))
+       :max-width clim:+fill+
        :height (min (* magnification (second +first-size+)) (- (or height 10000) 60))
-       :min-height 240 :max-height clim:+fill+))))
+       :min-height (min (* magnification (second +smallest-size+)) (- (or height 10000) 60))
+       :max-height clim:+fill+))))
 
 (defun place-pane (pane left top width height)
   "Show PANE at LEFT, TOP, WIDTH x HEIGHT pixels large. Hide PANE if WIDTH or HEIGHT is 0."
@@ -143,18 +145,19 @@ least height of the designators.")
 
 (defun initial-height (section) (second (assoc section *initial-heights*)))
 
+(defconstant +plan-height-step+ (* 5 +line-height+)
+  "The step in which the display of plans grows, in pixels.")
+
 (defgeneric needed-section-height (pane section width)
   (:documentation "Return the height that PANE, which shows SECTION, needs at WIDTH, in pixels.")
   (:method (pane section width)
     (declare (ignore width))
     (max (pane-extent pane) (initial-height section)))
-  ;; Tasks come and go while a plan runs. If their room changed with that, other displays would move
-  ;; from under the mouse. So plans get what the others leave, at least half of it.
+  ;; Tasks come and go while a plan runs. Other displays should not move each time.
   (:method ((pane plan-pane) section width)
     (declare (ignore width))
-    (if (plan-running-p (window-simulation (window-of pane)))
-        10000
-        (max (pane-extent pane) (initial-height section))))
+    (max (* +plan-height-step+ (ceiling (pane-extent pane) +plan-height-step+))
+         (initial-height section)))
   (:method ((pane parameter-pane) section width)
     (declare (ignore section width))
     (panel-height pane))

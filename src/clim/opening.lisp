@@ -210,7 +210,7 @@ has chosen another robot of the run, WINDOW shows that robot. Only the prompt's 
   ;; None of them can answer for another.
   (dolist (window (windows-on-port port)) (ars-magna.cli:abandon-session (window-session window)))
   (dolist (window (windows-on-port port))
-    (warn-of-closing window "the X server has gone")
+    (warn-of-closing window "the connection to the X server has ended")
     (close-window window)))
 
 (defun run-window-loop (window)
