@@ -175,3 +175,26 @@
         (host:unwrap-function 'window::paste-text 'test))
       (is (equal '(:clipboard :clipboard :primary :clipboard :clipboard :primary)
                  (reverse pasted))))))
+
+(test choosing.escape-clears-the-selection-and-closes-the-panel
+  (in-painted-window (window robot)
+    (let ((pane (painted-world window)))
+      (declare (ignore pane))
+      (window::fold-section window 'window::parameters nil)
+      (focus-pane-named window 'window::world)
+      (press-keys window #\> #\L :escape)
+      (is (not (window::popup-open-p window)))
+      (is-true (window::window-selection window))
+      (press-keys window :escape)
+      (is (null (window::window-selection window)))
+      (is (not (window::section-folded-p window 'window::parameters)))
+      (press-keys window :escape)
+      (is (window::section-folded-p window 'window::parameters)))))
+
+(test choosing.zooming-out-keeps-some-of-the-map
+  (in-painted-window (window robot)
+    (let ((pane (painted-world window)))
+      (dotimes (count 60) (window::zoom-view pane 1/2 50 50))
+      (is (<= 40 (* (window::pane-scale pane)
+                    (max (world:map-width (window::view-map pane))
+                         (world:map-height (window::view-map pane)))))))))

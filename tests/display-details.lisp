@@ -77,7 +77,7 @@
       (robot:start-track (robot:robot-camera robot 0) box nil)
       (let ((picture (detail robot :cameras)))
         (is (string= (y-of-text picture "local ") (y-of-text picture ">BOX#1<")))
-        (is (< (parse-integer (y-of-text picture ">View"))
+        (is (< (parse-integer (y-of-text picture ">Camera 0: no view"))
                (parse-integer (y-of-text picture "local "))))))))
 
 (test details.all-displays-fit-in-one-picture

@@ -154,3 +154,11 @@ world of ROBOT, at 16 pixels a cell."
       (let ((display::*drawn-trail-metres* 50))
         (is (equalp '((800 40 392 40)) (display::pieces-of-trail points)))
         (is (equalp '((800 72 800 40 424 40)) (display::pieces-of-trail corner)))))))
+
+(test names.in-wide-characters-have-room
+  (let ((wide (coerce (list (code-char #x82B1) (code-char #x5B50)) 'string)))
+    (is (= 4 (display::name-columns wide)))
+    (is (= 4 (display::name-columns "desk")))
+    (is (>= 24 (display::name-columns
+                (display::short-name (format nil "~{~A~}" (loop repeat 30 collect wide))))))
+    (is (equal "desk" (display::short-name "desk")))))

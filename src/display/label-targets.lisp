@@ -6,8 +6,15 @@
 
 (defconstant +longest-name+ 24 "The most characters of a name on the map or beside a sample.")
 
+(defun name-columns (name)
+  "Return the width of NAME in characters. East Asian characters count twice."
+  (loop for char across name sum (if (< (char-code char) 256) 1 (char-width char))))
+
 (defun short-name (name)
-  (cut name +longest-name+))
+  (let ((columns (name-columns name)))
+    (if (<= columns +longest-name+)
+        name
+        (cut name (floor (* +longest-name+ (length name)) columns)))))
 
 (defun drawn-name (name)
   "Return the text for the symbol or string NAME in pictures: in lower case, or unchanged if NAME

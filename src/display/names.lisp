@@ -167,7 +167,7 @@ must lead to the box."
 
 (defun name-width (target per-character)
   "Return the width of the box of TARGET's name, in pixels. Characters are PER-CHARACTER wide."
-  (+ 2 (* per-character (length (label-target-name target)))))
+  (+ 2 (* per-character (name-columns (label-target-name target)))))
 
 (defun reserve-name-box (placement box)
   "Keep other names of PLACEMENT away from BOX, that of a name."
