@@ -203,14 +203,12 @@ true when the awaited input has arrived."
 (defconstant +seconds-between-answer-checks+ 0.0005
   "The interval, in seconds, at which a thread checks whether another one has read its answer.")
 
-(defvar *answer-check* (make-semaphore "answer of the X server")
-  "A semaphore that is never signalled: threads pause by waiting for it.")
-
 (defun check-until-true (block why test &rest arguments)
   "Return when the function TEST returns true for ARGUMENTS. BLOCK is CLX's function for this."
   (declare (ignore block why))
-  (loop until (apply test arguments)
-        do (wait-on-semaphore *answer-check* +seconds-between-answer-checks+)))
+  (loop with pause = (make-semaphore "never signalled")
+        until (apply test arguments)
+        do (wait-on-semaphore pause +seconds-between-answer-checks+)))
 
 (wrap-function (find-symbol "READ-INPUT" "XLIB") #'read-x-server-input)
 (wrap-function (find-symbol "PROCESS-BLOCK" "XLIB") #'check-until-true)
