@@ -52,6 +52,62 @@ function that returns its text."
       (is-true (has-words-p text "/no/such/directory" "RECORD off first" "Film of ticks 0 to 3")))
     (is (mentions-p (film) "\"ticks\":[0,1,2,3]"))))
 
+(defun call-recording-in-studio (function)
+  "Call FUNCTION with a session that records a film of a run in the studio since tick 0, and with
+the run, at tick 4."
+  (in-studio (robot)
+    (let ((session (cli:make-session :batch t :input (make-string-input-stream ""))))
+      (cli::begin-recording session '())
+      (run:run-ticks 4)
+      (funcall function session (time:current-simulation)))))
+
+(test record.ends-at-the-tick-at-which-it-was-stopped
+  "The run goes on while the film is being saved. Meanwhile the status says so."
+  (with-film-file (film name)
+    (call-recording-in-studio
+     (lambda (session simulation)
+       (let ((texts '()))
+         (flet ((go-on (tick)
+                  (declare (ignore tick))
+                  (push (list (cli:recording-text session simulation) (cli:recording-film-p session))
+                        texts)
+                  (run:run-ticks 1 simulation)))
+           (is (equal '("recording a film since tick 0" t)
+                      (list (cli:recording-text session) (cli:recording-film-p session))))
+           (is-true (has-words-p (cli::end-recording session name #'go-on) "Film of ticks 0 to 4:"))
+           (is (equal '(("saving a film from tick 0 to 4" nil))
+                      (remove-duplicates texts :test #'equal)))
+           (is (< 4 (run:simulation-tick simulation)))
+           (is (null (cli:recording-text session)))))))
+    (is (mentions-p (film) "\"ticks\":[0,1,2,3,4]"))))
+
+(test record.goes-on-after-an-error-unless-the-prompt-has-ended
+  (with-film-file (film name)
+    (call-recording-in-studio
+     (lambda (session simulation)
+       (flet ((fail-once ()
+                (signals error (cli::end-recording session name
+                                                   (lambda (tick) (error "At ~D." tick))))
+                (run:run-ticks 1 simulation)))
+         (fail-once)
+         (is (cli:recording-film-p session))
+         (setf (cli::session-over-p session) t)
+         (fail-once)
+         (is-true (has-words-p (cli::end-recording session name) "Film of ticks 0 to 5:")))))
+    (is (mentions-p (film) "\"ticks\":[0,1,2,3,4,5]"))))
+
+(test film.ends-at-the-tick-at-which-it-was-begun
+  (with-film-file (film name)
+    (in-studio (robot)
+      (run:run-ticks 3)
+      (let* ((simulation (time:current-simulation))
+             (display:*frame-hook* (lambda (tick)
+                                     (declare (ignore tick))
+                                     (run:run-ticks 1 simulation))))
+        (display:save-animation nil name)
+        (is (< 3 (run:simulation-tick simulation)))))
+    (is (mentions-p (film) "\"ticks\":[0,1,2,3]"))))
+
 (test record.follows-a-rewind
   "The film begins no later than where the run went back to, and has no discarded ticks."
   (with-film-file (film name)

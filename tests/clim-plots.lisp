@@ -72,6 +72,81 @@
           (is (not (equal mark (mark))))
           (is (= count (length (run::simulation-observers (time:current-simulation))))))))))
 
+(defun ticks-plotted (window)
+  "Return a list with the ticks of each curve that WINDOW plots."
+  (loop for plotted in (cli::current-plotted (window::window-session window)
+                                             (time:current-simulation) 'studio-robot)
+        collect (mapcar #'plots:sample-range-tick
+                        (plots:time-series-ranges (cli::plotted-series plotted)))))
+
+(defun call-with-next-window (function window robot)
+  "Close WINDOW, as far as its settings are concerned. After ten ticks, call FUNCTION with the next
+window of ROBOT."
+  (let ((window::*last-preferences* nil) (window::*window-states* '()))
+    (window::save-settings window)
+    (run:run-ticks 10)
+    (call-with-window (lambda (next)
+                        (window::restore-settings next)
+                        (funcall function next))
+                      robot)))
+
+(defun ticks-between (first last) (loop for tick from first to last collect tick))
+
+(test plot-pane.next-window-continues-the-curves
+  "There is a gap where no window was open, and ticks cost nothing meanwhile."
+  (in-window (window robot)
+    (let ((count (length (run::simulation-observers (time:current-simulation)))))
+      (flet ((observers ()
+               (- (length (run::simulation-observers (time:current-simulation))) count)))
+        (plotted-window window "plot speed" "plot (lambda (r) (simulation-tick))" "plot-ticks 99")
+        (is (= 1 (observers)))
+        (call-with-next-window
+         (lambda (next)
+           (is (= 0 (observers)))
+           (window::follow-plots-now next)
+           (plotted-window next)
+           (is (= 1 (observers)))
+           (is (equal "Plots of the last 99 ticks" (window::plots-title next)))
+           (let ((expected (append (ticks-between 0 30) (ticks-between 40 70))))
+             (is (equal (list expected expected) (ticks-plotted next))))
+           (let ((pane (pane next 'window::plots)))
+             (is (window::pane-shown-p pane))
+             (is (= (* 2 window::+time-chart-height+) (window::pane-extent pane)))))
+         window robot)))))
+
+(test plot-pane.next-window-has-its-own-plots
+  "What the next window plots is nothing to the closed window's prompt, which may end later."
+  (in-window (window robot)
+    (plotted-window window "plot speed")
+    (call-with-next-window
+     (lambda (next)
+       (window::follow-plots-now next)
+       (type-in-window next "plot distance")
+       (setf (cli::session-over-p (window::window-session window)) t)
+       (cli::stop-plotting (window::window-session window))
+       (run:run-ticks 2)
+       (is (equal (list (append (ticks-between 0 30) (ticks-between 40 42)) (ticks-between 40 42))
+                  (ticks-plotted next)))
+       (is (equal '("speed") (cli:plotted-names (window::window-session window)))))
+     window robot)))
+
+(test plot-pane.next-window-has-no-curve-of-discarded-ticks
+  (in-window (window robot)
+    (run:keep-forks)
+    (plotted-window window "plot speed")
+    (call-with-next-window
+     (lambda (next)
+       (declare (ignore next))
+       (run:rewind 15)
+       (call-with-window (lambda (last)
+                           (window::restore-settings last)
+                           (is (equal (list (ticks-between 0 25)) (ticks-plotted last)))
+                           (window::follow-plots-now last)
+                           (run:run-ticks 1)
+                           (is (equal (list (ticks-between 0 26)) (ticks-plotted last))))
+                         (first (run:simulation-robots (time:current-simulation)))))
+     window robot)))
+
 (test plot-panel.gives-lines-to-the-prompt
   (in-window (window robot)
     (plotted-window window "plot speed" "plot (lambda (r) 1)")

@@ -72,8 +72,7 @@ ANYWAY saves the film even if definitions have changed since the run began."
       (reject-line "No film is being recorded. RECORD on begins a film; FILM file saves a film of ~
                     the run so far."))
     (format t "~A~%" (call-showing-progress (lambda (tell) (end-recording session file tell))
-                                            session
-                                            (simulation-tick (recording-simulation recording))))))
+                                            session (stop-recording recording)))))
 
 (defun record-cancel (session)
   (if (shiftf (session-recording session) nil)

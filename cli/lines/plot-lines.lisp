@@ -206,7 +206,8 @@ each tick. After an error in the function its curve ends; time goes on."
 the plots."
      "A window shows the plots of its own prompt. PLOT-PICTURE saves them in a file; PLOT-TICKS
 chooses the ticks that they show. Curves begin anew in forks and trials, and a rewind cuts them."
-     "Older samples are kept at longer intervals, at least every 512th part of the curve.")
+     "Older samples are kept as the least and the greatest value of intervals, which are at most
+a 256th part of the curve. So no peak is lost.")
     "Plot a quantity over time."
   (session-robot)
   (if (null what)

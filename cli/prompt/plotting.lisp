@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.cli)
 
-(export '(plotted-charts plots-mark set-plots-shown follow-plots plotted-names plotter-ticks))
+(export '(plotted-charts plots-mark set-plots-shown follow-plots plotted-names plotter-ticks
+          leave-plots continue-plots cut-plotter))
 
 ;;; An observer of the run takes the samples, between two ticks. Each run and robot has its own
 ;;; curves, so curves begin anew in a fork or trial, and continue when the prompt comes back. The
@@ -24,7 +25,7 @@ the value. USER-CODE-P is true if that function may signal errors."
   (series nil :type time-series :read-only t)
   (function nil :type (or null function)))
 
-(defstruct (plots (:constructor make-plots (robot)) (:copier nil))
+(defstruct (plots (:constructor make-plots (robot &optional plotted)) (:copier nil))
   "What is plotted for the robot named ROBOT of a run. OBSERVER takes the samples; or NIL."
   (robot nil :type symbol :read-only t)
   (plotted '() :type list)
@@ -184,18 +185,50 @@ samples are taken while SHOWN-P is NIL. LOCK guards the curves and what observer
             (multiple-value-bind (last value) (last-sample curve)
               (funcall (quantity-maker (plotted-quantity plotted)) value (and last tick)))))))
 
+(defun cut-plotter (plotter old new)
+  "Let the curves of PLOTTER in the run OLD continue in NEW, which has replaced OLD."
+  (let ((plots (gethash old (plotter-runs plotter))))
+    (when plots
+      (with-lock ((plotter-lock plotter))
+        (dolist (each plots)
+          (dolist (plotted (plots-plotted each)) (cut-plotted plotted (simulation-tick new)))))
+      (remhash old (plotter-runs plotter))
+      (setf (gethash new (plotter-runs plotter)) plots))))
+
 (defun cut-plots (old new)
-  "Let the plots of the run OLD continue in NEW, which has replaced OLD."
+  "Let the curves of the run OLD continue in NEW, which has replaced OLD."
   (dolist (plotter (remove nil (mapcar #'session-plotter (running-sessions))))
-    (let ((plots (gethash old (plotter-runs plotter))))
-      (when plots
-        (with-lock ((plotter-lock plotter))
-          (dolist (each plots)
-            (dolist (plotted (plots-plotted each)) (cut-plotted plotted (simulation-tick new)))))
-        (remhash old (plotter-runs plotter))
-        (setf (gethash new (plotter-runs plotter)) plots)))))
+    (cut-plotter plotter old new)))
 
 (add-listener *rewind-hooks* cut-plots)
+
+;;; The session of a window ends with the window. The next window of its robot continues the curves.
+
+(defun leave-plots (session)
+  "Take no more samples for SESSION. Return what it plots, for CONTINUE-PLOTS, or NIL."
+  (when (session-plotter session)
+    (set-plots-shown session nil)
+    (session-plotter session)))
+
+(defun plots-of-robot (plotter robot)
+  "Return a list of lists (run plots) for the robot named ROBOT. The plots have no observers."
+  (let ((all '()))
+    (maphash (lambda (run list)
+               (let ((plots (find robot list :key #'plots-robot)))
+                 (when plots (push (list run (make-plots robot (plots-plotted plots))) all))))
+             (plotter-runs plotter))
+    all))
+
+(defun continue-plots (session plotter robot)
+  "Let SESSION plot what PLOTTER, a value of LEAVE-PLOTS, has plotted. Continue its curves of the
+robot named ROBOT. No samples are taken before FOLLOW-PLOTS is called."
+  (let ((next (make-plotter :quantities (plotter-quantities plotter)
+                            :ticks (plotter-ticks plotter)
+                            ;; An observer of PLOTTER may still be at work.
+                            :lock (plotter-lock plotter))))
+    (loop for (run plots) in (plots-of-robot plotter robot)
+          do (setf (gethash run (plotter-runs next)) (list plots)))
+    (setf (session-plotter session) next)))
 
 ;;; What is shown.
 

@@ -2,28 +2,38 @@
 
 (in-package :ars-magna.cli)
 
-(export '(recording-text))
+(export '(recording-text recording-film-p))
 
 ;;; A film is made from the journal of a run when the recording ends. Until then a recording is only
 ;;; a run and a tick, so it costs the run nothing, and a film that cannot be saved is not lost.
 
 (defstruct (recording (:copier nil))
   "The film that a session records: the ticks of SIMULATION from START on. ROBOT is the name of the
-robot that the prompt commanded. OPTIONS are options of SAVE-ANIMATION."
+robot that the prompt commanded. OPTIONS are options of SAVE-ANIMATION. JOURNAL is the journal up to
+the end of the film while the film is being saved, else NIL."
   (simulation nil)
   (start 0 :type unsigned-byte)
   (robot nil :type symbol :read-only t)
-  (options '() :type list :read-only t))
+  (options '() :type list :read-only t)
+  (journal nil :type (or null journal)))
+
+(defun recording-film-p (session)
+  "True if SESSION records a film that it is not saving at present."
+  (let ((recording (session-recording session)))
+    (and recording (null (recording-journal recording)))))
 
 (defun recording-text (session &optional (shown *simulation*))
-  "Return a text about the film that SESSION records, or NIL if it records no film. The text names
-the run of the film unless it is the run SHOWN."
+  "Return a text about the film that SESSION records or saves, or NIL if there is none. The text
+names the run of the film unless it is the run SHOWN."
   (let ((recording (session-recording session)))
     (when recording
-      (let ((simulation (recording-simulation recording)))
-        (format nil "recording a film~@[ of ~A~] since tick ~D"
+      (let ((simulation (recording-simulation recording)) (journal (recording-journal recording)))
+        (format nil "~:[recording~;saving~] a film~@[ of ~A~] ~:[since~;from~] tick ~D~@[ to ~D~]"
+                journal
                 (and (not (eq simulation shown)) (run-description simulation))
-                (recording-start recording))))))
+                journal
+                (recording-start recording)
+                (and journal (journal-end journal)))))))
 
 (defun begin-recording (session options)
   "Make SESSION record a film of its run from the present tick on."
@@ -67,31 +77,38 @@ the run of the film unless it is the run SHOWN."
                    (journal-end journal)))
     journal))
 
-(defun save-recording (recording journal file hook)
-  "Save the film of RECORDING in FILE. Call HOOK with ticks to report progress. Return the truename
-of FILE and the last tick of the film."
-  (let* ((end (journal-end journal)) (*frame-hook* hook)
-         (path (path-of-name (or file (unused-film-name recording end)))))
-    (values (apply #'save-animation journal path
-                   :from (recording-start recording) :until end
-                   ;; A remark in the title says so if definitions have changed since.
-                   :anyway t
-                   (recording-options recording))
-            end)))
+(defun stop-recording (recording)
+  "Let the film of RECORDING end at the present tick, if it is not stopped yet. Return its last
+tick. Signals BAD-LINE if there is no film."
+  (journal-end (or (recording-journal recording)
+                   (setf (recording-journal recording) (recorded-journal recording)))))
 
-(defun film-text-for-user (recording path end)
+(defun film-text-for-user (start end path)
   (format nil "Film of tick~P ~D~@[ to ~D~]: ~A~%Open this file in a web browser to play the film."
-          (1+ (- end (recording-start recording))) (recording-start recording)
-          (and (/= end (recording-start recording)) end) (native-name path)))
+          (1+ (- end start)) start (and (/= end start) end) (native-name path)))
+
+(defun save-recording (recording file hook)
+  "Save the film of RECORDING, which is stopped, in FILE. Call HOOK with ticks to report progress.
+Return a text that says where the film is."
+  (let* ((journal (recording-journal recording))
+         (start (recording-start recording)) (end (journal-end journal))
+         (path (path-of-name (or file (unused-film-name recording end)))) (*frame-hook* hook))
+    (film-text-for-user start end (apply #'save-animation journal path
+                                         :from start :until end
+                                         ;; A remark in the title says so if definitions have
+                                         ;; changed since.
+                                         :anyway t
+                                         (recording-options recording)))))
 
 (defun end-recording (session &optional file (hook (constantly nil)))
   "Save the film that SESSION records in FILE or a new file. Return a text that says where it is.
 SESSION continues to record if the film cannot be saved. Call HOOK with ticks to report progress."
   (let ((recording (session-recording session)))
-    (multiple-value-bind (path end)
-        (save-recording recording (recorded-journal recording) file hook)
-      (setf (session-recording session) nil)
-      (film-text-for-user recording path end))))
+    (stop-recording recording)
+    (unwind-protect (prog1 (save-recording recording file hook)
+                      (setf (session-recording session) nil))
+      ;; A session that has ended meanwhile does not continue to record: it saves this film.
+      (unless (session-over-p session) (setf (recording-journal recording) nil)))))
 
 (defun run-of-other-prompts (recording)
   "Return the run whose messages other prompts show when the prompt of RECORDING has ended."

@@ -3,7 +3,7 @@
 (in-package :ars-magna.clim)
 
 ;;; Kept until this Lisp ends. A new window gets the preferences of the window that was closed last,
-;;; and the transcript of its robot's last window.
+;;; and the transcript and the plots of its robot's last window.
 
 (defvar *last-window-lock* (make-lock "last window"))
 (defvar *last-preferences* nil "The preferences of the last closed window, or NIL.")
@@ -11,11 +11,13 @@
 (defstruct (window-state (:copier nil))
   "The state of a closed window for the next window of its robot. LINES are the lines of the
 transcript, newest first. TYPED is the text of the input line, or NIL. LEFT-RUN-P is true if the
-window has left a trial or fork. QUIET-P is true if its prompt hid messages from commands of plans."
+window has left a trial or fork. QUIET-P is true if its prompt hid messages from commands of plans.
+PLOTTER is what it plotted, or NIL."
   (lines '() :type list :read-only t)
   (typed nil :type (or null string) :read-only t)
   (left-run-p nil :read-only t)
-  (quiet-p nil :read-only t))
+  (quiet-p nil :read-only t)
+  (plotter nil :read-only t))
 
 (defvar *window-states* '()
   "An alist from names of robots to the states of their last windows.")
@@ -23,6 +25,9 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
 (defun restore-window-state (window state)
   (let ((conversation (window-conversation window)) (transcript (window-transcript window)))
     (setf (ars-magna.cli:session-quiet-p (window-session window)) (window-state-quiet-p state))
+    (when (window-state-plotter state)
+      (ars-magna.cli:continue-plots (window-session window) (window-state-plotter state)
+                                    (shown-robot-name window)))
     (set-initial-lines transcript (window-state-lines state))
     (when (window-state-left-run-p state)
       (write-to-transcript transcript
@@ -35,7 +40,8 @@ window has left a trial or fork. QUIET-P is true if its prompt hid messages from
          (state (make-window-state :lines (transcript-lines (window-transcript window))
                                    :typed (text-in-input-line (window-conversation window))
                                    :left-run-p (and (ars-magna.cli:in-trial-or-fork-p session) t)
-                                   :quiet-p (ars-magna.cli:session-quiet-p session))))
+                                   :quiet-p (ars-magna.cli:session-quiet-p session)
+                                   :plotter (ars-magna.cli:leave-plots session))))
     (with-lock (*last-window-lock*)
       (setf *last-preferences* (window-preferences window))
       (dolist (name (window-robots-shown window))
@@ -258,6 +264,8 @@ has chosen another robot of the run, WINDOW shows that robot. Only the prompt's 
                                                  (screen-resolution port)
                                                  (graft-size (clim:find-graft :port port)))))
     (restore-settings window)
+    (when (anything-plotted-p window)
+      (set-plots-folded window (section-folded-p window 'plots)))
     (with-lock (*windows-lock*) (push window *windows*))
     (setf (window-thread window)
           (start-thread (lambda () (run-window-loop window))
@@ -314,6 +322,13 @@ or fork, one of a finished run, a new one. Signals MISUSE if there is no X serve
 
 (setf *display-opener* #'open-window
       *window-close-waiter* #'join-window-threads)
+
+(defun cut-plots-of-closed-windows (old new)
+  (dolist (state (with-lock (*last-window-lock*) (mapcar #'rest *window-states*)))
+    (when (window-state-plotter state)
+      (ars-magna.cli:cut-plotter (window-state-plotter state) old new))))
+
+(add-listener *rewind-hooks* cut-plots-of-closed-windows)
 
 (defun watch-rewound-run (old new)
   (dolist (window (open-window-list))

@@ -21,7 +21,8 @@ are written with package prefixes. Manual B.")
                 #:plan-runner-tasks #:plan-runner-tick #:task-label #:task-state #:task-result
                 #:task-runner #:failure-text #:*plan-end-hooks*)
   (:import-from :ars-magna.plots
-                #:+time-chart-height+ #:draw-time-charts #:sample-at #:sample-text
+                #:+time-chart-height+ #:draw-time-charts #:sample-range-at #:sample-range-tick
+                #:sample-text
                 #:time-chart-series #:time-series-name)
   (:import-from :ars-magna.faces #:editor-server)
   (:import-from :ars-magna.rpl-pictures

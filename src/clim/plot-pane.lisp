@@ -62,17 +62,16 @@
 
 ;;;; The mouse
 
-(defstruct (plot-point (:constructor make-plot-point (series tick value)) (:copier nil))
-  "A point of a plot: the sample VALUE of SERIES at TICK."
+(defstruct (plot-point (:constructor make-plot-point (series range)) (:copier nil))
+  "A point of the plot of SERIES: RANGE, a sample range."
   (series nil :read-only t)
-  (tick 0 :type integer :read-only t)
-  (value 0d0 :type double-float :read-only t))
+  (range nil :read-only t))
 
 (defmethod subject-title ((point plot-point))
-  (sample-text (plot-point-series point) (plot-point-tick point) (plot-point-value point)))
+  (sample-text (plot-point-series point) (plot-point-range point)))
 
 (defmethod offers ((point plot-point) window)
-  (let ((tick (plot-point-tick point)) (snapshot (window-snapshot window)))
+  (let ((tick (sample-range-tick (plot-point-range point))) (snapshot (window-snapshot window)))
     (append (and (< tick (snapshot-tick snapshot))
                  (list (list "Rewind to this tick" (rewind-line-text tick))))
             (list (list "Remove this plot"
@@ -83,8 +82,8 @@
   "Return the point of the plot that PANE shows at X, Y, or NIL."
   (let ((chart (subject-at (pane-subjects pane) x y)))
     (and chart
-         (multiple-value-bind (tick value) (sample-at chart x)
-           (and tick (make-plot-point (time-chart-series chart) tick value))))))
+         (let ((range (sample-range-at chart x)))
+           (and range (make-plot-point (time-chart-series chart) range))))))
 
 (defmethod hover-text ((pane plot-pane) x y) (subject-description (plot-point-at pane x y)))
 

@@ -17,13 +17,13 @@ all of them after the word BARE."
 
 (defun recording-line (window)
   "Return the prompt line that begins a film of what WINDOW shows, or ends the film."
-  (if (ars-magna.cli:session-recording (window-session window))
+  (if (ars-magna.cli:recording-film-p (window-session window))
       "record off"
       ;; The window shows titles and legends in other ways, but a film needs them.
       (format nil "record on~A" (layer-words (union '(:title :legend) (window-layers window))))))
 
 (defun recording-title (window)
-  (if (ars-magna.cli:session-recording (window-session window))
+  (if (ars-magna.cli:recording-film-p (window-session window))
       "Stop the film and save it"
       "Record a film"))
 

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.plots)
 
-(export '(time-chart time-chart-series collect-time-charts draw-time-charts sample-at
-          sample-text value-and-unit-text time-charts-svg +time-chart-height+))
+(export '(time-chart time-chart-series collect-time-charts draw-time-charts
+          sample-range-at sample-text value-and-unit-text time-charts-svg +time-chart-height+))
 
 ;;; A chart has a line with the name, the unit and the last value; below it is the curve between two
 ;;; axes. All charts share the ticks of the axis across. Charts are collected before they are drawn,
@@ -13,11 +13,11 @@
 (defconstant +time-chart-title-height+ 19 "The height of the title of a chart, in pixels.")
 (defconstant +value-marks-width+ 62 "The width of the marks to the left of a curve, in pixels.")
 
-(define-record (time-chart (:constructor make-time-chart (series samples step note across)))
-  "The chart of SERIES with the horizontal axis ACROSS. It shows SAMPLES (tick . value), STEP ticks
-apart, and NOTE, a text."
+(define-record (time-chart (:constructor make-time-chart (series ranges step note across)))
+  "The chart of SERIES with the horizontal axis ACROSS. It shows RANGES, sample ranges of STEP ticks
+each, and NOTE, a text."
   (series nil time-series "the time series of the chart" :export)
-  (samples '() list)
+  (ranges '() list)
   (step 1 (integer 1))
   (note "" string)
   (across (make-axis) axis))
@@ -27,24 +27,33 @@ apart, and NOTE, a text."
   (format nil "~A~:[ ~A~;~]" (rounded-number-text value) (string= "" (time-series-unit series))
           (time-series-unit series)))
 
-(defun sample-text (series tick value)
-  "Return a text with the name of SERIES, VALUE and TICK."
-  (format nil "~A: ~A at tick ~D"
-          (time-series-name series) (value-and-unit-text series value) tick))
+(defun sample-text (series range)
+  "Return a text with the name of SERIES and the values and ticks of RANGE, a sample range."
+  (let ((low (rounded-number-text (sample-range-low range)))
+        (high (value-and-unit-text series (sample-range-high range))))
+    (if (= (sample-range-low range) (sample-range-high range))
+        (format nil "~A: ~A at tick ~D" (time-series-name series) high (sample-range-tick range))
+        (format nil "~A: ~A to ~A at ticks ~D to ~D" (time-series-name series) low high
+                (sample-range-tick range) (sample-range-end range)))))
 
 (defmethod subject-title ((chart time-chart))
   (format nil "~A: ~A" (time-series-name (time-chart-series chart)) (time-chart-note chart)))
 
-(defun sample-at (chart x)
-  "Return the tick and the value of the sample that CHART shows nearest to the pixel X, or NIL."
+(defun ticks-from-range (range tick)
+  "Return the distance of TICK from the interval of RANGE, or 0 if TICK is inside."
+  (max 0 (- (sample-range-tick range) tick) (- tick (sample-range-end range))))
+
+(defun sample-range-at (chart x)
+  "Return the sample range that CHART shows nearest to the pixel X, or NIL."
   (let* ((axis (time-chart-across chart))
          (tick (+ (axis-low axis)
                   (* (- (axis-high axis) (axis-low axis))
                      (/ (- x (axis-from axis)) (- (axis-to axis) (axis-from axis))))))
          (nearest nil))
-    (dolist (sample (time-chart-samples chart) (values (car nearest) (cdr nearest)))
-      (when (or (null nearest) (< (abs (- tick (car sample))) (abs (- tick (car nearest)))))
-        (setf nearest sample)))))
+    (dolist (range (time-chart-ranges chart) nearest)
+      (when (or (null nearest)
+                (<= (ticks-from-range range tick) (ticks-from-range nearest tick)))
+        (setf nearest range)))))
 
 ;;; Collecting.
 
@@ -65,19 +74,20 @@ function from a time series to a text to show instead of its last value, or NIL.
   (let ((across (numeric-x-axis (ticks-shown all from) +value-marks-width+
                                 (max (+ 20 +value-marks-width+) (- width 12)) nil :inset 0)))
     (loop for series in all
-          collect (multiple-value-bind (samples step) (time-series-samples series from)
-                    (make-time-chart series samples step
+          collect (multiple-value-bind (ranges step) (time-series-ranges series from)
+                    (make-time-chart series ranges step
                                       (or (funcall notes series) (last-value-text series))
                                       across)))))
 
 ;;; Drawing.
 
-(defun value-axis (samples top bottom)
-  "Return the vertical axis for SAMPLES between the pixels TOP and BOTTOM."
-  (let* ((values (mapcar #'cdr samples))
-         (axis (numeric-y-axis (and values (list (as-rational (reduce #'min values))
-                                                 (as-rational (reduce #'max values))))
-                               nil '() 3)))
+(defun value-axis (ranges top bottom)
+  "Return the vertical axis for RANGES between the pixels TOP and BOTTOM."
+  (let ((axis (numeric-y-axis
+               (and ranges
+                    (list (as-rational (reduce #'min ranges :key #'sample-range-low))
+                          (as-rational (reduce #'max ranges :key #'sample-range-high))))
+               nil '() 3)))
     (setf (axis-from axis) bottom (axis-to axis) top)
     axis))
 
@@ -89,24 +99,47 @@ function from a time series to a text to show instead of its last value, or NIL.
                    (- (coerce (axis-high axis) 'double-float) low))))
     (lambda (number) (+ from (* scale (- number low))))))
 
-(defun unbroken-parts (samples step)
-  "Return SAMPLES as a list of lists, broken where more than STEP ticks have no sample."
+(defun unbroken-parts (ranges step)
+  "Return RANGES as a list of lists, broken where more than STEP ticks have no sample."
   (let ((parts '()) (part '()))
-    (dolist (sample samples (nreverse (if part (cons (nreverse part) parts) parts)))
-      (when (and part (> (- (car sample) (car (first part))) step))
+    (dolist (range ranges (nreverse (if part (cons (nreverse part) parts) parts)))
+      (when (and part
+                 (> (- (sample-range-tick range) (sample-range-tick (first part))) step))
         (push (nreverse part) parts)
         (setf part '()))
-      (push sample part))))
+      (push range part))))
+
+;;; The line visits the first, the least and the greatest value of each range. So it shows each
+;;; peak, and it is straight if the values rise or fall steadily.
+
+(defun extremes-to-visit (range next)
+  "Return the least and the greatest value of RANGE, without its first value. The one nearer to
+NEXT, the range after it or NIL, is the last."
+  (let* ((low (sample-range-low range)) (high (sample-range-high range))
+         (falling-p (and next (< (abs (- low (sample-range-first next)))
+                                 (abs (- high (sample-range-first next)))))))
+    (remove (sample-range-first range) (if falling-p (list high low) (list low high)))))
+
+(defun points-of-line (ranges)
+  "Return a list of lists (tick value): the line through RANGES."
+  (loop for (range next) on ranges
+        for tick = (sample-range-tick range)
+        for extremes = (extremes-to-visit range next)
+        for step = (/ (- (sample-range-end range) tick) (max 1 (length extremes)))
+        collect (list tick (sample-range-first range))
+        append (loop for value in extremes
+                     for place from (+ tick step) by step
+                     collect (list place value))))
 
 (defun draw-time-line (canvas chart upward)
   (let ((x-of (pixel-function (time-chart-across chart))) (y-of (pixel-function upward)))
     (with-ink ((series-color (time-series-index (time-chart-series chart))) 1.5)
-      (dolist (part (unbroken-parts (time-chart-samples chart) (time-chart-step chart)))
-        (let ((points (loop for (tick . value) in part
+      (dolist (part (unbroken-parts (time-chart-ranges chart) (time-chart-step chart)))
+        (let ((points (loop for (tick value) in (points-of-line part)
                             collect (funcall x-of tick) collect (funcall y-of value))))
           (draw-lines canvas draw-gcontext*
                       ;; A single sample is a dot.
-                      (if (rest part)
+                      (if (cddr points)
                           points
                           (list* (- (first points) 1) (second points) points))))))))
 
@@ -130,7 +163,7 @@ function from a time series to a text to show instead of its last value, or NIL.
                                                                 :color +faint-text-color+)))
 
 (defun draw-time-chart (canvas chart top height)
-  (let ((upward (value-axis (time-chart-samples chart) (+ top +time-chart-title-height+ 6)
+  (let ((upward (value-axis (time-chart-ranges chart) (+ top +time-chart-title-height+ 6)
                             (- (+ top height) 26)))
         (across (time-chart-across chart)))
     (with-subject (canvas chart)

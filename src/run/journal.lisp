@@ -39,7 +39,7 @@ Signals WRONG-ARGUMENT."
   (reverse (journal-newest-first journal)))
 
 (defun copied-journal (journal tick)
-  "Return a copy of JOURNAL for a fork of its run, which has reached TICK."
+  "Return a copy of JOURNAL, the journal of a run that has reached TICK."
   (let ((copy (copy-structure journal)))
     (setf (journal-header copy) (copy-list (journal-header journal)))
     (unless (journal-full-p copy) (setf (journal-end copy) tick))
@@ -194,8 +194,8 @@ since the journal was begun. No tick of SIMULATION has passed yet."
   (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
 
 (defun journal-up-to-now (simulation)
-  "Return the journal of SIMULATION, extended to the current tick unless the journal is full.
-Signals MISUSE if SIMULATION keeps no journal."
+  "Return a copy of the journal of SIMULATION, up to the current tick unless the journal is full.
+The copy does not grow when SIMULATION continues. Signals MISUSE if SIMULATION keeps no journal."
   (let ((journal (or (simulation-journal simulation)
                      (reject-use "This simulation keeps no journal. Start it with a journal: ~
                                   (with-simulation (ROBOT :journal t) ...), or (simulator ROBOT) ~
@@ -208,7 +208,7 @@ Signals MISUSE if SIMULATION keeps no journal."
             (getf header :definitions) (merge-definitions (getf header :definitions)
                                                           (definitions-depended-on simulation))
             (journal-header journal) header))
-    journal))
+    (copied-journal journal (simulation-tick simulation))))
 
 ;;;; Changes from outside
 
