@@ -128,8 +128,8 @@ NEXT, the range after it or NIL, is the last."
         for step = (/ (- (sample-range-end range) tick) (max 1 (length extremes)))
         collect (list tick (sample-range-first range))
         append (loop for value in extremes
-                     for place from (+ tick step) by step
-                     collect (list place value))))
+                     for number from 1
+                     collect (list (+ tick (* number step)) value))))
 
 (defun draw-time-line (canvas chart upward)
   (let ((x-of (pixel-function (time-chart-across chart))) (y-of (pixel-function upward)))
