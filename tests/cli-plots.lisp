@@ -52,8 +52,9 @@ STEP passes ticks."
   (multiple-value-bind (lines errors) (type-batch "plot early" "plot speed" "step 9" "plot")
     (let ((text (joined lines)))
       (is (= 1 errors))
-      (is (= 1 (occurrences "Error in the plot of early, which ends here: It is late." text)))
-      (is-true (has-words-p text "Tick 9." "ended at tick 3 by an error"
+      (is (= 1 (occurrences "Error in the plot of early: It is late." text)))
+      (is-true (has-words-p text "The curve of early ends here. PLOT early off removes it"
+                            "Tick 9." "ended at tick 3 by an error"
                             "0 m/tick at tick 9")))))
 
 (test plot.refuses-what-is-no-number
@@ -111,3 +112,29 @@ STEP passes ticks."
   (is-true (has-words-p (complaint "plot speed up") "too much"))
   (is-true (has-words-p (complaint "plot setf") "cannot be plotted"))
   (is-true (has-words-p (complaint "plot speed off") "speed is not plotted; nothing is")))
+
+(defun ars-user::breaking (robot)
+  (break "plotted")
+  (ars-user::tick-of robot))
+
+(defun type-while-the-clock-runs (&rest lines)
+  "Type LINES at a terminal. The simulator's thread owns the run, and no ticks pass."
+  (apply #'type-at-terminal
+         "(ars-magna.run:start-clock (current-simulation) :paused-p t)" lines))
+
+(test plot.a-break-of-a-function-is-answered-at-the-prompt
+  "Also if the simulator's thread takes the first sample, for which the line waits."
+  (let* ((written (type-while-the-clock-runs "plot breaking" "abort" "plot" "(+ 20 3)"))
+         (text (joined written)))
+    (is-true (has-words-p text "Plotting breaking." "*BREAK* -> plotted"
+                          "Report it and leave the plot of breaking."
+                          "Try the plot of breaking again."
+                          "the plot of breaking was aborted" "The curve of breaking ends here."
+                          "ended by an error" "23"))))
+
+(test ask.a-break-is-answered-where-it-is-asked
+  (let ((written (type-while-the-clock-runs "(ask butler (lambda () (break \"asked\") 42))" "0"
+                                            "(+ 20 3)")))
+    (is-true (written-p "*BREAK* -> asked" written))
+    (is-true (written-p "42" written))
+    (is-true (written-p "23" written))))

@@ -58,6 +58,38 @@
       (is (mentions-p (said-in window) "It waits until the earlier break is answered"))
       (is (equal "Break> " (cli:unpainted-text (first (window::shown-input-line conversation))))))))
 
+(defun print-in-threads (console &rest texts)
+  "Write each of TEXTS to CONSOLE a hundred times in its own thread, without flushing. Return the
+threads."
+  (loop for text in texts
+        collect (let ((text text))
+                  (base:start-thread (lambda ()
+                                       (loop repeat 100 do (write-string text console)))
+                                     "printer"))))
+
+(test awaiting.the-prompt-stays-whatever-other-threads-print
+  "Also while it changes, and below text that does not end in a newline."
+  (in-window (window robot)
+    (let* ((conversation (window::window-conversation window))
+           (console (window::conversation-console conversation)))
+      (flet ((shown-p (label text)
+               (equal (list label text (length text)) (window::shown-input-line conversation))))
+        (setf (cli::console-edited-p console) t)
+        (let ((threads (print-in-threads console "part " (format nil "whole~%") "Robot> ")))
+          (is (loop for prompt in '#1=("Robot> " "Break> " . #1#)
+                    repeat 200
+                    do (cli::show-prompt console prompt)
+                    always (shown-p prompt "")))
+          (mapc #'base:join-thread threads))
+        (cli::change-typed-line console (lambda (line)
+                                          (setf (cli:drawn-line-text line) "turn 1"
+                                                (cli:drawn-line-point line) 6)))
+        (mapc #'base:join-thread (print-in-threads console "part "))
+        (is (shown-p "Break> " "turn 1"))
+        (is (mentions-p (said-in window) "part part "))
+        (cli::end-typed-line console)
+        (is (null (window::shown-input-line conversation)))))))
+
 (test awaiting.code-that-draws-in-a-window-is-not-waited-for
   "Nobody could answer it: the thread that handles keys would wait. It is said once."
   (in-window (window robot)

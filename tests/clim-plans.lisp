@@ -112,6 +112,27 @@
       (is (eq before (window::plan-look-tree look)))
       (is (window::update-look-if-changed look)))))
 
+(test plan-pane.shows-the-state-at-a-break-though-it-opens-later
+  "Until the break is answered only the thread of the plans can look at them. A change of the view
+shows that state, too."
+  (in-window (window robot)
+    (ars-magna.rpl-robot:begin-plan 'ars-user::window-plan)
+    (run:run-ticks 3)
+    (let* ((pane (pane window 'window::plan)) (look (window::plan-look-of pane)))
+      (ars-magna.rpl-robot:call-with-plans
+       (lambda () (is (window::update-look-of-own-plans look)))
+       (window::plan-interface-of (time:current-simulation)))
+      (lay-out window 1600 900)
+      (window::fold-section window 'window::plan nil)
+      (window::repaint pane)
+      (is (drawn-in pane (task-with-number 3)))
+      (setf (window::plan-look-view look) :timeline)
+      (window::repaint pane)
+      (is (drawn-in pane (lambda (subject)
+                           (and (window::button-p subject)
+                                (string= "Keep a trace from now on"
+                                         (window::button-label subject)))))))))
+
 ;;; The timeline.
 
 (test plan-timeline.a-click-goes-back-to-that-moment

@@ -132,7 +132,7 @@
            (console (window::conversation-console (window::window-conversation window))))
       (cli::show-prompt console "Robot> ")
       (is (= 2 (window::needed-rows interactor)))
-      (setf (cli:drawn-line-shown (cli:console-line console))
+      (setf (window::console-input-line console)
             (list "Robot> " (format nil "turn 1~%turn 2~%turn 3~%turn 4") 0))
       (is (= 5 (window::needed-rows interactor)))
       (window::refresh window)

@@ -226,6 +226,19 @@ KEYS have been pressed at Robot>."
     (is (equal (format nil "~Aone~%two" red)
                (cli::text-broken-at-blanks (format nil "~Aone two" red) 10)))))
 
+(test screen.shows-the-line-again-after-output-that-is-not-flushed
+  "As of a user's own thread: the thread that reads the line looks after it."
+  (multiple-value-bind (console out) (terminal-console 40)
+    (let ((paper (make-paper 40)))
+      (setf (cli::console-edited-p console) t)
+      (cli::show-prompt console "Robot> ")
+      (base:join-thread (base:start-thread (lambda () (format console "Turned.~%")) "printer"))
+      (cli::redraw-if-outdated console)
+      (print-on-paper paper (get-output-stream-string out))
+      (is (equal '("Turned." "Robot>") (paper-lines paper)))
+      (cli::redraw-if-outdated console)
+      (is (equal "" (get-output-stream-string out))))))
+
 (test screen.breaks-what-follows-a-label
   "As in STATUS; a table is left as it is."
   (is (equal (format nil "Time:     Tick 0,~%idle, else")

@@ -167,9 +167,9 @@ If the fluent is only pulsed, the quantity is the number of pulses."
                    (quantity-name quantity)))
     (setf (plotter-quantities plotter)
           (append (plotter-quantities plotter) (list quantity)))
-    (update-plots session)
     (format t "Plotting ~A~@[, in ~A~].~%" (quantity-name quantity)
-            (and (string/= "" (quantity-unit quantity)) (quantity-unit quantity)))))
+            (and (string/= "" (quantity-unit quantity)) (quantity-unit quantity)))
+    (update-plots session)))
 
 (defun remove-plot (session text)
   "Remove the plot with the name or number TEXT from SESSION, or all plots if TEXT is empty."

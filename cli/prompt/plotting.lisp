@@ -74,16 +74,21 @@ samples are taken while SHOWN-P is NIL. LOCK guards the curves and what observer
     (flet ((compute ()
              (setf number (plotted-number (funcall (plotted-function plotted) robot tick)))))
       (if (quantity-user-code-p quantity)
-          (call-user-code #'compute (list "the plot of " (quantity-name quantity)
-                                          ", which ends here"))
+          (call-user-code #'compute (list "the plot of " (quantity-name quantity)))
           (compute)))
     number))
+
+(defun end-curve (plotted)
+  "Take no more samples of PLOTTED, because of an error, and say so."
+  (setf (plotted-function plotted) nil)
+  (let ((name (quantity-name (plotted-quantity plotted))))
+    (message-set "The curve of " name " ends here. PLOT " name " off removes it")))
 
 (defun take-sample (plotted robot tick lock)
   (let ((number (call-plotted-function plotted robot tick)))
     (if number
         (with-lock (lock) (add-sample (plotted-series plotted) tick number))
-        (setf (plotted-function plotted) nil))))
+        (end-curve plotted))))
 
 (defun take-samples (plots simulation lock)
   (let ((robot (find (plots-robot plots) (simulation-robots simulation) :key #'robot-name)))

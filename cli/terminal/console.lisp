@@ -171,12 +171,17 @@ newest first."))
     (draw-typed-line console stream)
     (finish-output stream)))
 
-(defun redraw-if-resized (console)
-  "Draw the line being typed again if the width of the window has changed since it was drawn."
+(defun outdated-line-p (line columns)
+  "True if LINE is not on the screen, or was drawn for another number of columns than COLUMNS."
+  (or (null (drawn-line-shown line))
+      (and (drawn-line-columns line) (/= (drawn-line-columns line) columns))))
+
+;; Not all programs flush what their threads print.
+(defun redraw-if-outdated (console)
+  "Draw the line being typed again if output has been written since it was drawn, or if the width of
+the window has changed."
   (let ((line (console-line console)))
-    (when (and line
-               (drawn-line-columns line)
-               (/= (drawn-line-columns line) (values (funcall (console-window console)))))
+    (when (and line (outdated-line-p line (values (funcall (console-window console)))))
       (change-typed-line console (constantly nil)))))
 
 (defun hide-typed-line (console)

@@ -27,8 +27,7 @@
 
 (defun shown-input-line (conversation)
   "Return label, text and cursor position of the input line of CONVERSATION, as a list, or NIL."
-  (let ((line (ars-magna.cli:console-line (conversation-console conversation))))
-    (and line (ars-magna.cli:drawn-line-shown line))))
+  (console-input-line (conversation-console conversation)))
 
 (defun waiting-breaks-text (answers)
   "Return the text above the input line while programs wait for answers. ANSWERS is a list of texts

@@ -88,6 +88,12 @@ reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to re
       (setf (plan-look-tree look) seen)
       t)))
 
+(defun update-plan-view (view look interface)
+  "Store the tree or timeline, as VIEW says, in LOOK. Return NIL if the plans are busy."
+  (ecase view
+    (:tree (update-plan-tree look interface))
+    (:timeline (update-plan-timeline look interface))))
+
 (defun update-plan-image (look interface)
   "Store in LOOK the tree or timeline of the plans of INTERFACE, or NIL if INTERFACE is NIL. Return
 NIL if the plans are busy."
@@ -97,8 +103,7 @@ NIL if the plans are busy."
   (cond ((null interface)
          (setf (plan-look-tree look) nil (plan-look-page look) nil)
          t)
-        ((eq :timeline (plan-look-view look)) (update-plan-timeline look interface))
-        (t (update-plan-tree look interface))))
+        (t (update-plan-view (plan-look-view look) look interface))))
 
 (defun update-look (look interface mark)
   "Store in LOOK an image of the plans of INTERFACE, and MARK, the value of PLANS-STATE-MARK for
@@ -122,12 +127,14 @@ them. Return NIL if the plans are busy, else true."
           (misuse () nil))))))
 
 (defun update-look-of-own-plans (look)
-  "Update LOOK at once if this thread runs its plans' reactions. Return true if LOOK was updated."
-  (let* ((simulation (plan-look-simulation look)) (interface (plan-interface-of simulation)))
-    (and interface
-         (holding-plans-p interface)
-         (funcall (plan-look-shown-p look))
-         (update-look look interface (plans-state-mark look interface)))))
+  "Update both views of LOOK at once if this thread runs its plans' reactions. Return true if LOOK
+was updated."
+  (let ((interface (plan-interface-of (plan-look-simulation look))))
+    ;; No other thread can look while the plans stand still. The user may open the display or change
+    ;; the view meanwhile; and the display opens by itself only some time after a plan has begun.
+    (when (and interface (holding-plans-p interface))
+      (update-plan-view (if (eq :tree (plan-look-view look)) :timeline :tree) look interface)
+      (update-look look interface (plans-state-mark look interface)))))
 
 ;;; Which looks there are, and how plans end.
 

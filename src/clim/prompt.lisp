@@ -10,7 +10,10 @@
 (defclass window-console (ars-magna.cli:console)
   ((transcript :initarg :transcript :reader console-transcript)
    ;; The last line that was entered.
-   (entered :initform "" :accessor console-entered))
+   (entered :initform "" :accessor console-entered)
+   ;; Label, text and cursor position of the input line, as a list, or NIL. Output of other threads
+   ;; goes to the transcript and leaves this unchanged, also output that is not flushed.
+   (input-line :initform nil :accessor console-input-line))
   (:documentation "A console that writes to a transcript. Another pane shows the input line."))
 
 (defun notify-window (console)
@@ -28,15 +31,18 @@
   (declare (ignore stream))
   (let ((line (ars-magna.cli:console-line console)))
     (when (and line (null (ars-magna.cli:drawn-line-shown line)))
-      (setf (ars-magna.cli:drawn-line-shown line)
-            (list (ars-magna.cli:drawn-line-label line) (ars-magna.cli:drawn-line-text line)
-                  (ars-magna.cli:drawn-line-point line)))
+      (let ((shown (list (ars-magna.cli:drawn-line-label line)
+                         (ars-magna.cli:drawn-line-text line)
+                         (ars-magna.cli:drawn-line-point line))))
+        (setf (ars-magna.cli:drawn-line-shown line) shown
+              (console-input-line console) shown))
       (notify-window console))))
 
 (defmethod ars-magna.cli:finish-typed-line ((console window-console) stream)
   (let ((line (ars-magna.cli:console-line console)))
     (unless (ars-magna.cli:console-asked-p console)
       (setf (console-entered console) (ars-magna.cli:drawn-line-text line)))
+    (setf (console-input-line console) nil)
     (fresh-line stream)
     (write-entered-line (console-transcript console)
                         (format nil "~A~A~%" (ars-magna.cli:drawn-line-label line)

@@ -79,7 +79,9 @@ Return the values of BODY."
 
 (defun await-answer (question custody)
   (loop until (wait-while-answering (question-answered question))
-        do (release-custody-if-dead custody)
+        ;; The function may break in the owner's thread; only this thread may read the answer.
+        do (serve-while-waiting *front-end*)
+           (release-custody-if-dead custody)
            ;; If no thread owns the world any more, this one answers the pending questions.
            (call-with-custody custody (constantly nil) (constantly nil))))
 
