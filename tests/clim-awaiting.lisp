@@ -73,11 +73,14 @@ threads."
     (let* ((conversation (window::window-conversation window))
            (console (window::conversation-console conversation)))
       (flet ((shown-p (label text)
-               (equal (list label text (length text)) (window::shown-input-line conversation))))
+               (let ((shown (window::shown-input-line conversation)))
+                 (and shown
+                      (equal label (cli:unpainted-text (first shown)))
+                      (equal (list text (length text)) (rest shown))))))
         (setf (cli::console-edited-p console) t)
         (let ((threads (print-in-threads console "part " (format nil "whole~%") "Robot> ")))
-          (is (loop for prompt in '#1=("Robot> " "Break> " . #1#)
-                    repeat 200
+          (is (loop for count from 1 to 200
+                    for prompt = (if (oddp count) "Robot> " "Break> ")
                     do (cli::show-prompt console prompt)
                     always (shown-p prompt "")))
           (mapc #'base:join-thread threads))

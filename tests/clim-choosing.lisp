@@ -43,10 +43,10 @@
 (test choosing.tab-completes-while-a-line-is-typed
   (in-painted-window (window robot)
     (window::pass-key (window::window-conversation window) "sta")
-    (setf (cli::console-line (window::conversation-console
-                              (window::window-conversation window)))
-          (cli::make-drawn-line :label "Robot> " :text "sta" :point 3
-                                :shown '("Robot> " "sta" 3)))
+    (let ((console (window::conversation-console (window::window-conversation window))))
+      (setf (cli:console-line console)
+            (cli::make-drawn-line :label "Robot> " :text "sta" :point 3))
+      (cli:draw-typed-line console nil))
     (press-in-focus window :tab)
     (is (eq 'window::interactor (pane-with-keys window)))
     (is (member :tab (keys-handed window)))))
