@@ -124,13 +124,15 @@ STEP passes ticks."
 
 (test plot.a-break-of-a-function-is-answered-at-the-prompt
   "Also if the simulator's thread takes the first sample, for which the line waits."
-  (let* ((written (type-while-the-clock-runs "plot breaking" "abort" "plot" "(+ 20 3)"))
-         (text (joined written)))
-    (is-true (has-words-p text "Plotting breaking." "*BREAK* -> plotted"
+  (let ((text (joined (type-while-the-clock-runs "plot breaking" "abort" "plot" "(+ 20 3)"))))
+    (is (not (mentions-p text "Plotting breaking")))
+    (is-true (has-words-p text "*BREAK* -> plotted"
                           "Report it and leave the plot of breaking."
                           "Try the plot of breaking again."
                           "the plot of breaking was aborted" "The curve of breaking ends here."
-                          "ended by an error" "23"))))
+                          "ended by an error" "23")))
+  (let ((text (joined (type-while-the-clock-runs "plot breaking" "0" "plot off" "(+ 20 3)"))))
+    (is-true (has-words-p text "Plotting breaking." "No more plots." "23"))))
 
 (test ask.a-break-is-answered-where-it-is-asked
   (let ((written (type-while-the-clock-runs "(ask butler (lambda () (break \"asked\") 42))" "0"

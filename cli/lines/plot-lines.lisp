@@ -160,6 +160,13 @@ If the fluent is only pulsed, the quantity is the number of pulses."
                                "no value yet"))))
         (format t "Nothing is plotted. PLOT takes ~A.~%" (plottable-text)))))
 
+(defun curve-ended-p (session quantity)
+  "True if the curve of QUANTITY in the present run of SESSION has ended after an error."
+  (let ((plotted (find quantity
+                       (current-plotted session *simulation* (name-of-robot-to-plot))
+                       :key #'plotted-quantity)))
+    (and plotted (end-of-curve-text plotted) t)))
+
 (defun add-plot (session text)
   (let ((plotter (ensure-plotter session)) (quantity (find-quantity text)))
     (when (find (quantity-name quantity) (plotted-names session) :test #'string-equal)
@@ -167,9 +174,10 @@ If the fluent is only pulsed, the quantity is the number of pulses."
                    (quantity-name quantity)))
     (setf (plotter-quantities plotter)
           (append (plotter-quantities plotter) (list quantity)))
-    (format t "Plotting ~A~@[, in ~A~].~%" (quantity-name quantity)
-            (and (string/= "" (quantity-unit quantity)) (quantity-unit quantity)))
-    (update-plots session)))
+    (update-plots session)
+    (unless (curve-ended-p session quantity)
+      (format t "Plotting ~A~@[, in ~A~].~%" (quantity-name quantity)
+              (and (string/= "" (quantity-unit quantity)) (quantity-unit quantity))))))
 
 (defun remove-plot (session text)
   "Remove the plot with the name or number TEXT from SESSION, or all plots if TEXT is empty."
