@@ -293,7 +293,8 @@ server blackens what is resized, and has it painted by what it sends to the wind
                                  (mapcar #'base:message-text
                                          (base:take-messages
                                           (run:simulation-messages simulation))))))
-               (is-true (has-words-p said "the connection to the X server has ended" "The running line"
+               (is-true (has-words-p said "the connection to the X server has ended"
+                                      "The running line"
                                      "signal-semaphore" "not run: turn 1")
                         "~A" said)))
         (run:stop-clock simulation)))))

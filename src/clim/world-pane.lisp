@@ -75,7 +75,8 @@
 (defun zoom-view (pane factor &optional (x 0) (y 0))
   "Magnify the view of PANE by FACTOR, so that the point at X, Y of PANE stays in place."
   (let ((old (pane-scale pane)))
-    (setf (pane-scale pane) (clamp (* old factor) (min old (least-useful-scale (view-map pane))) 128))
+    (setf (pane-scale pane)
+          (clamp (* old factor) (min old (least-useful-scale (view-map pane))) 128))
     (let ((ratio (/ (pane-scale pane) old)))
       (move-view pane (round (* (- ratio 1) (+ (pane-left pane) x)))
                  (round (* (- ratio 1) (+ (pane-top pane) y)))))))
