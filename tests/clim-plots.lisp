@@ -102,10 +102,11 @@ window of ROBOT."
         (is (= 1 (observers)))
         (call-with-next-window
          (lambda (next)
-           (is (= 0 (observers)))
+           ;; The one of the next window's display of the world.
+           (is (= 1 (observers)))
            (window::follow-plots-now next)
            (plotted-window next)
-           (is (= 1 (observers)))
+           (is (= 2 (observers)))
            (is (equal "Plots of the last 99 ticks" (window::plots-title next)))
            (let ((expected (append (ticks-between 0 30) (ticks-between 40 70))))
              (is (equal (list expected expected) (ticks-plotted next))))
