@@ -62,7 +62,7 @@
     (setf (robot::camera-last-view (robot:robot-camera robot 0)) '(1.0d0 20.25d0)
           (robot::camera-location (robot:robot-camera robot 0)) (world:find-thing 'box))
     (let ((picture (detail robot :cameras)))
-      (is (mentions-p picture "Camera 0: view requested now: 1.0"))
+      (is (mentions-p picture "Camera 0, view now: 1.0"))
       (is (mentions-p picture ">in </text>"))
       (is (mentions-p picture ">BOX#1</text>")))))
 
@@ -125,7 +125,7 @@
           (loop for number from 1 to 80 collect (+ 100d0 number)))
     (run:run-ticks 3)
     (let ((texts (format nil "~{~A~^ ~}" (words-in-picture robot :display :cameras))))
-      (is (mentions-p texts "Camera 0: view requested 3 ticks ago: 101.0"))
+      (is (mentions-p texts "Camera 0, view 3 ticks ago: 101.0"))
       (is (mentions-p texts "180.0"))
       (is (not (find #\~ texts))))
     (let ((other (words-in-picture robot :display :hands)))
@@ -134,7 +134,7 @@
 (test details.where-no-view-was-asked-for-it-says-so
   (in-studio (robot)
     (is (mentions-p (format nil "~{~A~^ ~}" (words-in-picture robot :display :cameras))
-                    "Camera 0: no view requested yet"))))
+                    "Camera 0: no view yet"))))
 
 (test names.stand-where-they-did-though-not-all-places-are-tried
   "The first place that hides nothing is the best one."

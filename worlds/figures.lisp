@@ -53,18 +53,6 @@ the map to draw; NIL is the whole map.")
 
 ;;; Worlds.
 
-(defun save-picture-of-watson ()
-  "Save a picture of ROBBIE in WATSON, with the plant that its camera tracks."
-  (with-simulation (robbie :seed 1 :clean t)
-    (let ((camera (robot-camera robbie 0)))
-      (camera-turn camera 0.78d0)
-      (run-ticks 20)
-      (camera-get-object-designator camera :non-local '((:color green))
-        (continuation (err camera designator)
-          (when designator (camera-track camera designator nil))))
-      (run-ticks 20))
-    (save-picture robbie (worlds-path "watson.svg") :layers (cons :wedges *picture-layers*))))
-
 (defun save-picture-of-layers ()
   "Save a picture of DOT in TINY that shows the layers of pictures."
   (with-simulation (dot :seed 4)
@@ -161,7 +149,6 @@ the map to draw; NIL is the whole map.")
 
 (defun save-quick-figures ()
   "Save the pictures that take only seconds. Tests compare the shipped pictures with these."
-  (save-picture-of-watson)
   (save-picture-of-layers)
   (write-ward-files (worlds-path "floors/"))
   (save-picture-of-rollouts)

@@ -190,9 +190,9 @@ believed direction of the thing that CAMERA tracks."
   "Return a text with the last view that was requested of CAMERA, and its age. Unlike STATUS, a
 display takes no new view, so that it shows only what the robot knows."
   (if (camera-image-view camera)
-      (format nil "Camera ~D: view requested ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
+      (format nil "Camera ~D, view ~[now~:;~:*~D tick~:P ago~]: ~{~,1F~^ ~}"
               (camera-image-index camera) (camera-image-view-age camera) (camera-image-view camera))
-      (format nil "Camera ~D: no view requested yet" (camera-image-index camera))))
+      (format nil "Camera ~D: no view yet" (camera-image-index camera))))
 
 (defun draw-tracked-object (canvas track x y width)
   "Write the type and distance of TRACK, a tracked designator's image. Draw what it denotes."
