@@ -335,7 +335,7 @@
      (let ((ars-worlds::*figures-directory* (uiop:ensure-directory-pathname directory)))
        (ars-worlds::save-quick-figures)
        (let ((files (directory (merge-pathnames "**/*.svg" ars-worlds::*figures-directory*))))
-         (is (= 7 (length files)))
+         (is (= 6 (length files)))
          (dolist (file files)
            (let ((name (enough-namestring file (truename ars-worlds::*figures-directory*))))
              (is (string= (base:file-text (project-file (format nil "worlds/~A" name)))
