@@ -216,10 +216,8 @@
     (let ((pane (open-panel window 1180 820)))
       (flet ((now (line)
                (type-in-run line)
-               (run::record-settings (time:current-simulation))
-               (window::refresh window)
-               (definitions:parameters-summary
-                (window::parameter-values-in-force (time:current-simulation)))))
+               (publish-and-refresh window)
+               (definitions:parameters-summary (window::parameter-values-in-force pane))))
         (is (equal "default" (now "params default")))
         (is (equal "clean" (now "params clean")))
         (is (window::row-changed-p (panel-row pane "motion-noise*")))
@@ -238,10 +236,25 @@
         (window::refresh window)
         (is (eq before (window::pane-painted pane)))
         (setf ars:hand-move-delay* 5)
-        (run::record-settings (time:current-simulation))
-        (window::refresh window)
+        (publish-and-refresh window)
         (is (not (eq before (window::pane-painted pane))))
         (is (eql 5 (window::parameter-row-value (panel-row pane "hand-move-delay*"))))))))
+
+(test parameters.the-panel-records-nothing-in-the-run
+  "It learns of a change in the thread that runs the lines."
+  (run:with-simulation (ars-worlds:dot :journal t)
+    (call-with-window
+     (lambda (window)
+       (let* ((simulation (time:current-simulation))
+              (journal (run::simulation-journal simulation))
+              (before (run::journal-length journal))
+              (pane (open-panel window 1180 820)))
+         (setf ars:hand-move-delay* 7)
+         (let ((window::*windows* (list window)))
+           (window::follow-prompt nil simulation simulation))
+         (is (= before (run::journal-length journal)))
+         (is (eql 7 (window::parameter-row-value (panel-row pane "hand-move-delay*"))))))
+     ars-worlds:dot)))
 
 (test parameters.a-waiting-line-counts-for-the-next-step
   "While a line runs, the panel shows in grey what waiting lines will set."

@@ -36,7 +36,7 @@
   :test #'equal
   :documentation "The parts of the window that have titles.")
 
-(define-constant +greedy-sections+ '(parameters plots plan)
+(define-constant +tall-sections+ '(parameters plots plan)
   :test #'equal
   :documentation "The sections that mostly need more height than there is. The first that is open
 gets half of the height or more.")
@@ -114,16 +114,16 @@ they are open, get the rest. Otherwise each gets a fair share."
         (t (divide-scarce-height needs height))))
 
 (defun divide-scarce-height (needs height)
-  "Divide HEIGHT, which is less than NEEDS. The first of the greedy sections gets what it needs, up
+  "Divide HEIGHT, which is less than NEEDS. The first of the tall sections gets what it needs, up
 to half of HEIGHT, or more if the others leave more. The others get fair shares, at least a line."
-  (let* ((greedy (some (lambda (section) (find section needs :key #'first)) +greedy-sections+))
-         (others (remove greedy needs)))
-    (if (and greedy others)
-        (let ((share (min (second greedy)
+  (let* ((tall (some (lambda (section) (find section needs :key #'first)) +tall-sections+))
+         (others (remove tall needs)))
+    (if (and tall others)
+        (let ((share (min (second tall)
                           (max (min (floor height 2)
                                     (- height (* (height-of-whole-lines 0) (length others))))
                                (- height (reduce #'+ others :key #'second))))))
-          (cons (list (first greedy) share) (divide-height others (- height share))))
+          (cons (list (first tall) share) (divide-height others (- height share))))
         (divide-height-fairly needs height))))
 
 (defun height-of-whole-lines (height)

@@ -121,10 +121,12 @@ FROM to TO. The first list that fits is valid; no package helps beyond U+FFFF.")
           (char-code character) (fc-list-there-p) (font-package-for character)))
 
 (defvar *packages-named* '() "The packages that a window has told the user to install.")
+(defvar *packages-named-lock* (make-lock "packages named"))
 
 (defun report-missing-character (window character)
   "Say in WINDOW which package has CHARACTER, once for each package."
   (let ((package (font-package-for character)))
-    (unless (member package *packages-named* :test #'equal)
-      (push package *packages-named*)
+    (when (with-lock (*packages-named-lock*)
+            (unless (member package *packages-named* :test #'equal)
+              (push package *packages-named*)))
       (write-in-window window "~A~%" (missing-character-text character)))))

@@ -43,9 +43,7 @@ other windows show all robots of NEW."
     (dolist (window (open-window-list))
       (let ((watcher (window-watcher window)))
         (cond ((eq new (watcher-simulation watcher))
-               (unless (live-p new)
-                 (unless (simulation-over new) (record-settings new))
-                 (publish-snapshot watcher new)))
+               (unless (live-p new) (publish-snapshot watcher new)))
               ((and old (not (eq old new)) (follows-prompt-p window old))
                (switch-window-to-run window new)))))))
 

@@ -78,9 +78,9 @@
 
 (defun needs-met-p (places needs)
   "True if PLACES give each section at least its height in NEEDS, lists (section pixels). The
-greedy sections are ignored, because they take any height."
+tall sections are ignored, because they take any height."
   (loop for (section pixels) in needs
-        always (or (member section +greedy-sections+)
+        always (or (member section +tall-sections+)
                    (<= pixels (fifth (assoc section places))))))
 
 (defun greatest-height-needs (layout)

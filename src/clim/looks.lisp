@@ -8,7 +8,8 @@
 ;;; high and its capitals 8; and 12 for text in columns, where each letter is 7 pixels wide.
 
 (defconstant +label-size+ 11 "The height of the font of labels, in pixels.")
-(defconstant +column-font-size+ 35/3 "The height of the font of text in columns, in pixels.")
+(defconstant +column-font-size+ 35/3
+  "The height of the font of text in columns, in pixels. It is rounded after magnification.")
 
 (defconstant +greatest-magnification+ 6
   "The largest magnification, in screen pixels per window pixel.")

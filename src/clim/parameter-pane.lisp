@@ -92,11 +92,14 @@ Return NIL if VALUE is at the limit of PARAMETER. T is one step up from NIL."
 
 ;;; What is shown.
 
+(defun parameter-values-in-force (pane)
+  (watcher-parameters (window-watcher (window-of pane))))
+
 (defun parameter-rows (pane)
   "Return the rows of PANE: strings, which are headings, and PARAMETER-ROW objects."
   (loop with group = nil
         for parameter in (all-parameters)
-        for value across (parameter-values-in-force (window-simulation (window-of pane)))
+        for value across (parameter-values-in-force pane)
         unless (equal group (parameter-group parameter))
           collect (setf group (parameter-group parameter))
         collect (make-parameter-row parameter value)))
@@ -105,7 +108,7 @@ Return NIL if VALUE is at the limit of PARAMETER. T is one step up from NIL."
   "Forget the values requested in PANE that have been set, or all if no line runs or waits."
   (setf (pane-requested pane)
         (and (running-line (window-conversation (window-of pane)))
-             (let ((values (parameter-values-in-force (window-simulation (window-of pane)))))
+             (let ((values (parameter-values-in-force pane)))
                (loop for parameter in (all-parameters)
                      for value across values
                      for request = (assoc (parameter-symbol parameter) (pane-requested pane))
@@ -116,7 +119,7 @@ Return NIL if VALUE is at the limit of PARAMETER. T is one step up from NIL."
   (forget-fulfilled-requests pane)
   (let ((simulation (window-simulation (window-of pane))))
     (list (pane-offset pane) (multiple-value-list (pane-size pane)) (live-p simulation)
-          (pane-requested pane) (coerce (parameter-values-in-force simulation) 'list))))
+          (pane-requested pane) (coerce (parameter-values-in-force pane) 'list))))
 
 (defun row-value-or-request (pane row)
   "Return the value of ROW that PANE steps: the value requested last, if it is not set yet, or else
@@ -190,8 +193,7 @@ the present value. The second value is true if a line that sets it still waits."
   (let ((simulation (window-simulation (window-of pane))) (x 4))
     (dolist (button (set-all-buttons pane)) (setf x (+ 5 (draw-plan-button canvas button x 3))))
     (draw-label canvas (+ x 4) 15
-                (format nil "now: ~A" (parameters-summary
-                                       (parameter-values-in-force simulation))))
+                (format nil "now: ~A" (parameters-summary (parameter-values-in-force pane))))
     (with-gcontext (draw-gcontext* :foreground +secondary-text-color+)
       (draw-label canvas 4 35 (scope-text simulation)))))
 

@@ -75,7 +75,8 @@
 (defun draw-plan-text (canvas pane y text)
   "Draw TEXT from Y down, wrapped to the width of PANE. Return the y coordinate of its end."
   (apply #'draw-plan-lines canvas y
-         (wrapped-text text (max 16 (floor (- (content-width pane) 16) 13/2)))))
+         (wrapped-text text (max 16 (floor (- (content-width pane) 16)
+                                     (character-width canvas +label-size+))))))
 
 (defun draw-plan-ending (canvas pane y)
   "Write below Y how the last plan, if any, ended. Return the y coordinate of the text's end."

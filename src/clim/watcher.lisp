@@ -118,12 +118,10 @@ user code. Measuring began at TICK and SECONDS. REACHED is the rate in ticks per
 
 ;;; Parameters.
 
-(defun parameter-values-in-force (simulation)
-  "Return a vector of the values of all parameters in SIMULATION, in the order of ALL-PARAMETERS."
-  (if (headless-p simulation)
-      (simulation-known-parameters simulation)
-      (cl:map 'vector (lambda (parameter) (global-value (parameter-symbol parameter)))
-              (all-parameters))))
+(defun global-parameter-values ()
+  "Return a vector of the global values of all parameters, which live runs have."
+  (cl:map 'vector (lambda (parameter) (global-value (parameter-symbol parameter)))
+          (all-parameters)))
 
 ;;;; Snapshots
 
@@ -167,7 +165,7 @@ quick. The function GONE is called with the reason when the watched run has been
   (unpaced-p nil :type boolean)
   ;; How time goes, and how it was found to go so far.
   (progress (make-progress) :type progress)
-  ;; The values of the parameters at the last look.
+  ;; The values of the parameters in force, at the last look or in the last snapshot.
   (parameters (parameter-values) :type vector)
   (sample (make-rate-sample) :type rate-sample)
   ;; What is known of the plans.
@@ -185,6 +183,10 @@ quick. The function GONE is called with the reason when the watched run has been
   (setf (watcher-wanted-p watcher) nil
         (watcher-stale-p watcher) nil
         (watcher-traces watcher) (count-of-changes simulation)
+        ;; A headless run has values of its own, bound in the thread that runs it.
+        (watcher-parameters watcher) (if (headless-p simulation)
+                                         (parameter-values)
+                                         (global-parameter-values))
         (watcher-snapshot watcher)
         (let ((old (watcher-snapshot watcher)))
           (take-snapshot (simulation-world simulation)
@@ -234,11 +236,11 @@ itself, do nothing, because the next tick makes the snapshot."
           (funcall (watcher-news watcher)))))))
 
 (defun check-parameter-changes (watcher)
-  "Report to the window of WATCHER if parameters have changed since the last look."
+  "Report to the window of WATCHER if parameters of its live run have changed since the last look."
   (let ((simulation (watcher-simulation watcher)))
-    (when simulation
-      (let ((values (parameter-values-in-force simulation)))
-        (unless (every #'eql values (shiftf (watcher-parameters watcher) (copy-seq values)))
+    (when (and simulation (not (headless-p simulation)))
+      (let ((values (global-parameter-values)))
+        (unless (every #'eql values (shiftf (watcher-parameters watcher) values))
           (funcall (watcher-news watcher)))))))
 
 (defun check-graphics-scale (watcher)

@@ -4,11 +4,11 @@
 
 (export '(live-view make-live-view))
 
-;;; Names of things at rest are like the lettering of a map. They depend only on things at rest, the
-;;; map, the scale and the layers. A name keeps its place until another thing at rest, or a mark
-;;; that stays, takes this place. Robots and moving things do not move these names, and are drawn
-;;; above them. Names of robots and moving things are placed for each picture, and keep their place
-;;; beside their owner while it is free. They may cover names of things at rest.
+;;; The places of names of things at rest depend only on things at rest, the map, the scale and the
+;;; layers. A name keeps its place until another thing at rest, or a mark that stays, takes this
+;;; place. Robots and moving things do not move these names, and are drawn above them. Names of
+;;; robots and moving things are placed for each picture, and keep their place beside their owner
+;;; while it is free. They may cover names of things at rest.
 
 (defconstant +ticks-to-rest+ 100
   "A thing, robot or mark is at rest after this number of ticks without a move.")

@@ -2,8 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(journal add-remark remove-remark record-operation record-settings begin-journal
-          journal-up-to-now))
+(export '(journal add-remark remove-remark record-operation begin-journal journal-up-to-now))
 
 ;;; A journal is a header, entries (tick operator argument ...) in the order in which they took
 ;;; effect, and the tick at which it ended. An operator is a name defined by DEFINE-OPERATOR;

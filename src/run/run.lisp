@@ -18,7 +18,7 @@
   (:memory
    ;; State as well, but digested by the method below.
    (known-parameters (parameter-values) simple-vector
-                     "the values of the parameters that were recorded last" :export))
+                     "the values of the parameters that were recorded last"))
   (:link
    (known-noise *noise-before-cleaning* list
                 "the parameter values that DIRTY-SIMULATION would restore, as recorded last")
