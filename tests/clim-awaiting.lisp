@@ -113,6 +113,21 @@ threads."
                                        "Drawing code has called the debugger (look)"))
                          (base:take-messages)))))))
 
+(test awaiting.errors-in-drawing-code-go-to-the-run-that-is-shown
+  "Also if the window has shown another run before, whose messages its thread would add to."
+  (in-window (window robot)
+    (world:set-attribute (world:find-thing "BOX#1") :draw-function
+                         (lambda (&rest arguments)
+                           (declare (ignore arguments))
+                           (error "no brush")))
+    (world:move-thing (world:find-thing "BOX#1") (robot:robot-hand robot 0))
+    (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
+    (let ((definitions:*message-queue* (definitions:make-message-queue)))
+      (window::refresh window)
+      (is (null (base:take-messages))))
+    (is (= 1 (count-if (lambda (message) (mentions-p (base:message-text message) "no brush"))
+                       (base:take-messages))))))
+
 (test awaiting.a-line-that-waits-for-plans-can-answer-what-they-wait-for
   "The plans are held until the thread that waits for them does what it is needed for."
   (in-studio (robot)

@@ -54,6 +54,7 @@
   (in-window (window robot)
     (window::toggle-layer window :grid)
     (window::fold-section window 'window::hands)
+    (window::set-plan-view (pane window 'window::plan) :timeline)
     (setf (window::preferences-details-width (window::window-preferences window)) 300)
     (window::write-to-transcript (window::window-transcript window) (format nil "That was said.~%"))
     (let ((window::*last-preferences* nil) (window::*window-states* '())
@@ -64,6 +65,8 @@
          (window::restore-settings next)
          (is (equal layers (window::window-layers next)))
          (is (window::section-folded-p next 'window::hands))
+         (is (eq :timeline (window::plan-look-view (window::plan-look-of
+                                                    (pane next 'window::plan)))))
          (is (= 300 (window::preferences-details-width (window::window-preferences next))))
          (is (mentions-p (said-in next) "That was said."))
          (window::fold-section next 'window::hands nil)

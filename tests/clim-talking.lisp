@@ -369,6 +369,15 @@
       (is (eq 'somebody (window::watcher-robot (window::window-watcher window))))
       (is (mentions-p (clim:frame-pretty-name window) "SOMEBODY")))))
 
+(test window.has-its-present-title-before-each-line
+  "A run that was rewound may have become live since the title was set."
+  (in-window (window robot)
+    (let ((cli:*prompt-robot* (robot:robot-name robot)))
+      (setf (clim:frame-pretty-name window) "ARS MAGNA: STUDIO-ROBOT, a fork")
+      (window::match-window-and-prompt window)
+      (is (equal (window::title-now window) (clim:frame-pretty-name window)))
+      (is (not (mentions-p (clim:frame-pretty-name window) "fork"))))))
+
 (test window.says-why-it-closes-when-its-run-is-over
   (let ((reasons '()))
     (in-studio (robot)

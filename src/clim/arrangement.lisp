@@ -50,8 +50,8 @@ gets half of the height or more.")
 is true if this display has colours. DETAILS-WIDTH, PLAN-WIDTH and TRANSCRIPT-HEIGHT are in pixels;
 NIL means a size that suits the window. FOLDED lists sections that show only their title, and UNSEEN
 those of them that open by themselves when they have something to show. ABSENT lists sections that
-take no room even for their title, as the parameters do while they are folded. MAGNIFICATION is the
-number of screen pixels per window pixel, or NIL to suit the screen."
+take no room even for their title, as the parameters do while they are folded. PLAN-VIEW is the view
+of plans. MAGNIFICATION is the number of screen pixels per window pixel, or NIL to suit the screen."
   (layers *window-layers* :type list)
   (color-p t)
   (details-width nil :type (or null real))
@@ -60,6 +60,7 @@ number of screen pixels per window pixel, or NIL to suit the screen."
   (folded '(designators cameras hands bins plan parameters) :type list)
   (unseen '(designators cameras hands bins plan) :type list)
   (absent '(plots) :type list)
+  (plan-view :tree :type (member :tree :timeline))
   (magnification nil :type (or null (integer 1))))
 
 (defun title-pane-name (section)

@@ -52,7 +52,10 @@ PLOTTER is what it plotted, or NIL."
   (destructuring-bind (preferences state)
       (with-lock (*last-window-lock*)
         (list *last-preferences* (rest (assoc (shown-robot-name window) *window-states*))))
-    (when preferences (setf (window-preferences window) (copy-preferences preferences)))
+    (when preferences
+      (setf (window-preferences window) (copy-preferences preferences)
+            (plan-look-view (watcher-plans (window-watcher window)))
+            (preferences-plan-view preferences)))
     (if state
         (restore-window-state window state)
         (ars-magna.cli:show-definition-messages (window-session window)))))
@@ -203,7 +206,9 @@ has chosen another robot of the run, WINDOW shows that robot. Only the prompt's 
             ((not (eq (watcher-robot watcher) ars-magna.cli:*prompt-robot*))
              (show-robot-called window ars-magna.cli:*prompt-robot* simulation)
              (write-in-window window "~A in ~A.~%" ars-magna.cli:*prompt-robot*
-                              (simulation-name simulation)))))))
+                              (simulation-name simulation)))))
+    ;; A run that was rewound may have become live since the title was set.
+    (update-title window)))
 
 ;;; When the X server goes, the thread that reads events, or a window's that paints, finds out.
 

@@ -131,15 +131,17 @@ would be cut off. Record in PANE what was painted where."
 (defun whole-appearance (pane)
   (list (pane-chosen pane) (pane-appearance pane)))
 
+(defun paint-all (pane)
+  (paint pane)
+  (when (limit-scroll-offset pane) (paint pane))
+  (paint-selection pane)
+  (paint-scroll-bar pane))
+
 (defun repaint (pane)
   (when (pane-shown-p pane)
     (setf (pane-painted pane) (whole-appearance pane))
-    (call-buffered (lambda ()
-                     (paint pane)
-                     (when (limit-scroll-offset pane) (paint pane))
-                     (paint-selection pane)
-                     (paint-scroll-bar pane))
-                   pane)
+    (call-with-messages-of-run (lambda () (call-buffered (lambda () (paint-all pane)) pane))
+                               (window-of pane))
     (repaint-popup-if-covered pane)
     (update-description pane)))
 

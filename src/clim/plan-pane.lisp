@@ -20,7 +20,8 @@
   (repaint-if-changed pane))
 
 (defun set-plan-view (pane view)
-  (setf (plan-look-view (plan-look-of pane)) view
+  (setf (preferences-plan-view (window-preferences (window-of pane))) view
+        (plan-look-view (plan-look-of pane)) view
         (pane-offset pane) 0)
   (request-new-look pane))
 

@@ -28,6 +28,13 @@
   "Run BODY, which executes the command TITLE. If BODY signals an error, print it in WINDOW."
   `(call-guarded-command ,window ,title (lambda () ,@body)))
 
+;; The window may show another run than when its thread began.
+(defun call-with-messages-of-run (function window)
+  "Call FUNCTION, which draws. Messages, such as errors in drawing code, go to the run of WINDOW."
+  (let* ((simulation (window-simulation window))
+         (*message-queue* (if simulation (simulation-messages simulation) *message-queue*)))
+    (funcall function)))
+
 ;;;; The transcript
 
 ;;; Any thread may add lines; they are kept newest first, the last few thousand of them. Each has a

@@ -62,15 +62,19 @@ queued. ERASED-P is true if all must be painted, changed or not. SNAPSHOT was pa
 (defun window-title (robot-name &optional place)
   (format nil "ARS MAGNA: ~A~@[, ~A~]" robot-name place))
 
-(defun update-title (window)
+(defun title-now (window)
   (let ((simulation (window-simulation window)))
-    ;; Not all of CLIM's ports can do that.
-    (ignore-errors
-     (setf (clim:frame-pretty-name window)
-           (window-title (watcher-robot (window-watcher window))
-                         (and (not (live-p simulation))
-                              (not (simulation-over simulation))
-                              (ars-magna.cli:run-description simulation)))))))
+    (window-title (watcher-robot (window-watcher window))
+                  (and (not (live-p simulation))
+                       (not (simulation-over simulation))
+                       (ars-magna.cli:run-description simulation)))))
+
+(defun update-title (window)
+  ;; Not all of CLIM's ports can do that.
+  (ignore-errors
+   (let ((title (title-now window)))
+     (unless (equal title (clim:frame-pretty-name window))
+       (setf (clim:frame-pretty-name window) title)))))
 
 (defun make-robot-window (watcher &rest options)
   "Return a new window, not yet visible, for the robot of WATCHER. OPTIONS are CLIM's options for
@@ -157,7 +161,7 @@ frames, and :usual-magnification."
     (if (shiftf (painting-erased-p (window-painting window)) nil)
         (repaint-all window)
         (mapc #'repaint-if-changed (display-panes window)))
-    (rearrange-if-needed window)
+    (call-with-messages-of-run (lambda () (rearrange-if-needed window)) window)
     ;; The X server may be slower than we are.
     (clim:medium-finish-output (clim:sheet-medium (pane-named window 'world)))
     (unless (eq snapshot (painting-snapshot (window-painting window)))
