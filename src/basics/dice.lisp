@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(dice make-dice copy-dice text-hash text-checksum digest make-digest digest-add
+(export '(dice make-dice copy-dice mixed-word text-hash text-checksum digest make-digest digest-add
           digest-add-word digest-add-identity))
 
 ;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the same
@@ -20,6 +20,11 @@
          (word (ldb (byte 64 0) (* (logxor word (ash word -27)) #x94D049BB133111EB))))
     (declare (type word word))
     (logxor word (ash word -31))))
+
+(declaim (inline mixed-word))
+(defun mixed-word (one other)
+  "Return a 64-bit hash of the integers ONE and OTHER."
+  (mix-bits (logxor (mix-bits (ldb (byte 64 0) one)) (ldb (byte 64 0) other))))
 
 (declaim (inline %make-dice dice-state (setf dice-state) copy-dice))
 (define-record (dice (:constructor %make-dice (state)))

@@ -6,7 +6,7 @@
                             wrapped-text
           call-printing-plainly printing-plainly printing-text print-named abridged safe-text
           unqualified-text text-as-typed +more+ same-name-p nearest-name misspelling-p value-equal
-          name-string name-before-p))
+          name-string qualified-name name-before-p))
 
 (defun blank-character-p (char)
   "True if CHAR is a space, newline or the like."
@@ -203,6 +203,11 @@ LENGTH characters. Deep, long and circular data are abridged. If printing fails,
 (defun name-string (name)
   "Return NAME, a symbol or string, as a string in upper case."
   (string-upcase (string name)))
+
+(defun qualified-name (symbol)
+  "Return a string that names SYMBOL with its package, for FIND-ROBOT and similar functions."
+  (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
+          (symbol-name symbol)))
 
 (defun %same-name-p (a b)
   "True if the symbols or strings A and B have the same name, regardless of package and case."

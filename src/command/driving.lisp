@@ -141,6 +141,11 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
   "True if ROBOT has driven in the previous or the current tick."
   (>= (robot-drove-tick robot) (1- (world-tick (robot-world robot)))))
 
+;; A robot that stops may coast.
+(defmethod drives-robot-p ((operation operation))
+  (let ((command (operation-command operation)))
+    (or (trait-p :drives command) (trait-p :stops command))))
+
 ;; See reading 95.
 (define-command robot-stop (operation (robot robot))
     ()

@@ -12,7 +12,7 @@
   "a designator or a storage bin")
 
 (defun handling-dice (part)
-  (world-dice (robot-world (part-robot part)) :handling))
+  (robot-dice (part-robot part) :handling))
 
 (defun destination-name (destination)
   (cond ((storage-bin-p destination) (location-name destination))
@@ -179,7 +179,7 @@ the thing, which silently makes designators of the thing invalid."
 (defun end-lost-grips (world)
   "Check all watched grips in WORLD, and end the HAND-TRACK of each hand that has lost its grip."
   (declare #.*hot*)                     ; in each tick
-  (dolist (robot (world-robots world))
+  (dolist (robot (robots-in-order world))
     (loop for hand across (robot-hands robot)
           do (when (and (resource-event (the hand hand)) (grip-watched-p hand))
                (run-operation (resource-event hand))))))

@@ -236,10 +236,9 @@ called with NIL when the track begins, and with an error code when the track end
 
 (defun turn-camera (operation camera angle)
   "Turn CAMERA by ANGLE, in radians, for OPERATION; return the estimated angle (reading 144)."
-  (let ((world (robot-world (camera-robot camera))))
-    (interrupt-track operation camera)
-    (incf (camera-angle camera) (double angle))
-    (+ (double angle) (angle-error (world-dice world :looking)))))
+  (interrupt-track operation camera)
+  (incf (camera-angle camera) (double angle))
+  (+ (double angle) (angle-error (robot-dice (camera-robot camera) :looking))))
 
 (defun turn-camera-to (operation camera direction)
   "Turn CAMERA the shorter way to DIRECTION, relative to the robot; return the estimated angle."

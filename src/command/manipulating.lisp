@@ -97,7 +97,7 @@ with :FAILED if the body fails."
                                                        (operation-arguments operation))))
   "Run the method that is OPERATION's subject. Fail if the method no longer applies, or by chance."
   (let ((method (operation-subject operation))
-        (dice (world-dice (operation-world operation) :manipulations)))
+        (dice (robot-dice (resource-robot (operation-resource operation)) :manipulations)))
     (if (and (method-applies-p method (operation-arguments operation))
              (chance (method-success method) dice))
         (run-method-body operation method)

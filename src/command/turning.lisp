@@ -137,7 +137,7 @@ range, else NIL (reading 91)."
 not notice the mistake (reading 103)."
   (let ((place (robot-place-here robot)))
     (or (and place (eq type (place-type place)))
-        (chance robot-align-error-prob* (world-dice (robot-world robot) :place)))))
+        (chance robot-align-error-prob* (robot-dice robot :place)))))
 
 ;; See reading 104.
 (define-command robot-align-place (operation (robot robot))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.copying)
 
-(export '(reference digest-state contains-value-p closed-over-values fields-of-type saved-slot-p
+(export '(reference digest-state parts-to-digest contains-value-p closed-over-values fields-of-type saved-slot-p
                     blank-object
           note-savable-function savable-function-name find-savable-function contradiction
           signal-contradiction must-hold proper-list-of-p))
@@ -25,8 +25,19 @@ parts. Return DIGEST. A kind may add an :AFTER method.")
       (digest-add-identity object digest)
       (when kind
         (dolist (slot (kind-decisive-slots kind))
-          (digest-slot slot (slot-content slot object) digest))))
+          (digest-slot slot
+                       (if (kind-slot-part-p slot)
+                           (parts-to-digest object (slot-content slot object))
+                           (slot-content slot object))
+                       digest))))
     digest))
+
+(defgeneric parts-to-digest (object parts)
+  (:documentation "Return PARTS, the contents of a slot of OBJECT that holds its parts, in the order
+in which they are digested. A kind adds a method if the order in the slot must not matter.")
+  (:method (object parts)
+    (declare (ignore object))
+    parts))
 
 (defun digest-slot (slot value digest)
   (if (kind-slot-part-p slot)

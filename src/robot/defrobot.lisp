@@ -124,7 +124,16 @@ PARSE-CAMERA is such a function for cameras."
   the part's form, and a function that rejects a value
 - a format string that says what should follow the option")
 
-(defun read-blueprint (name environment position angle lists)
+(defun parse-body-attributes (name attributes)
+  "Return ATTRIBUTES, an object descriptor, for the body of the robot NAME. It blocks other robots
+unless ATTRIBUTES say otherwise."
+  (let ((descriptor (checked-descriptor "defrobot" attributes)))
+    (warn-of-misspellings (definition-title "defrobot" name) name descriptor)
+    (if (assoc :obsmove descriptor)
+        descriptor
+        (append descriptor '((:obsmove t))))))
+
+(defun read-blueprint (name environment position angle attributes lists)
   "Return a blueprint. LISTS is a property list of options in *PART-OPTIONS* and their values."
   (flet ((reject (clause expected)
            (reject-clause (definition-title "defrobot" name) clause expected)))
@@ -132,19 +141,21 @@ PARSE-CAMERA is such a function for cameras."
       (make-blueprint :name name :map (map-name map)
                       :x (double (first position)) :y (double (second position))
                       :angle (double angle)
+                      :attributes (parse-body-attributes name attributes)
                       :parts (loop for (option nil parse) in *part-options*
                                    append (loop for specification in (getf lists option)
                                                 collect (funcall parse specification
                                                                  #'reject)))))))
 
 (addition define-robot)
-(defun define-robot (name environment position angle &key cameras hands bins parts)
+(defun define-robot (name environment position angle &key cameras hands bins parts attributes)
   "Define a robot as DEFROBOT does, but with evaluated arguments. ENVIRONMENT is a map or its name,
-POSITION a list (x y), CAMERAS a list of lists (fov resolution), and PARTS a list of lists (kind
-initarg value ...). Return the robot."
+POSITION a list (x y), CAMERAS a list of lists (fov resolution), PARTS a list of lists (kind initarg
+value ...), and ATTRIBUTES an object descriptor. Return the robot."
   (check-robot-name (definition-title "defrobot" name) name)
   (check-robot-variable name)
   (let* ((blueprint (read-blueprint name environment position angle
+                                    attributes
                                     (list :cameras cameras :hands hands :bins bins :parts parts)))
          (robot (ensure-resident-robot blueprint)))
     (register *robots* name blueprint :variable t :value robot)
@@ -175,9 +186,13 @@ initarg value ...). Return the robot."
     (unless (and (proper-list-p start) (= (length start) 3)
                  (proper-list-p (second start)) (= (length (second start)) 2))
       (reject start "(environment (x y) angle)"))
-    (check-options definition options (list* :documentation (mapcar #'first *part-options*)))
+    (check-options definition options
+                   (list* :attributes :documentation (mapcar #'first *part-options*)))
     (unless (typep (getf options :documentation "") 'string)
       (reject (getf options :documentation) "a string as the documentation"))
+    (unless (descriptor-p (getf options :attributes))
+      (reject (list :attributes (getf options :attributes))
+              "a list of lists (attribute value) after :attributes, each attribute once"))
     (loop for (option nil nil words) in *part-options*
           do (unless (proper-list-p (getf options option))
                (reject (list option (getf options option)) (format nil words))))))
@@ -198,6 +213,8 @@ MALFORMED-DEFINITION if FORM signals an error."
                                "a map, its name, or a form whose value is one")
           (list ,(value-of x (second start)) ,(value-of y (second start)))
           ,(value-of angle start)
+          ,@(when (getf options :attributes)
+              `(:attributes ,(descriptor-form name (getf options :attributes))))
           ,@(loop for (option form) in *part-options*
                   for specifications = (getf options option)
                   append `(,option
@@ -213,6 +230,7 @@ MALFORMED-DEFINITION if FORM signals an error."
   :hands (STRENGTH ...)
   :bins (CAPACITY ...)
   :parts ((KIND INITARG VALUE ...) ...) -- an addition: parts of your own kinds, see DEFINE-KIND
+  :attributes ((ATTRIBUTE VALUE) ...) -- an addition: what other robots see, as for things
   :documentation TEXT
 NAME becomes a special variable bound to the robot. The robot stands in the resident world of the
 map ENVIRONMENT (its variable or name) at (X,Y), in metres, heading ANGLE, in radians. Numbers are

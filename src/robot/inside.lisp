@@ -126,11 +126,11 @@ PART holds moves along, and a track of PART is lost. Warnings are queued."
   (declare (ignore old-location))
   (break-containment-circle thing new-location)
   (when (or (null new-location) (thing-contents thing) (plusp (thing-capacity thing)))
-    (mapc #'enforce-robot-containment (world-robots (thing-world thing)))))
+    (mapc #'enforce-robot-containment (robots-in-order (thing-world thing)))))
 
 (note-savable-function 'watch-container)
 
 (defun enforce-containment (world)
   "Enforce the rules of containment in WORLD: pull robots' parts out of things beyond reach."
-  (dolist (robot (world-robots world))
+  (dolist (robot (robots-in-order world))
     (enforce-robot-containment robot)))

@@ -78,7 +78,10 @@ outside the map (reading 215)."
                     (blueprint-angle blueprint))
     (add-odometer robot 'main)))
 
+;; A reset world has a new floor, without bodies; see ARRANGE-ROBOTS.
 (defmethod reset :before ((robot robot))
+  (let ((body (shiftf (robot-body robot) nil)))
+    (when body (setf (thing-alive-p body) nil (thing-location body) nil)))
   (mapc #'release-number (live-designators robot)))
 
 (defmethod reset :after ((robot robot))
@@ -112,7 +115,9 @@ outside the map (reading 215)."
         (retire-robot robot reason)
         (call-run-enders robot)
         (interrupt-resources (timeline-of robot) (robot-resources robot))
-        (setf (world-robots world) (remove robot (world-robots world)))))))
+        (take-body robot)
+        (setf (world-robots world) (remove robot (world-robots world)))
+        (arrange-robots world)))))
 
 (defun remove-robots-named (name reason)
   (dolist (world (remove nil (mapcar #'map-resident (all-maps))))
@@ -132,7 +137,8 @@ same name. The calling thread must own WORLD."
         (dolist (robot (world-robots world))
           (when (eq (robot-name robot) (blueprint-name blueprint))
             (remove-robot robot "it has been defined anew")))
-        (make-robot blueprint world))))
+        (prog1 (make-robot blueprint world)
+          (arrange-robots world)))))
 
 (defun current-resident-world-p (world)
   "True if WORLD is the resident world of its map, and no other map has replaced this map."

@@ -9,7 +9,9 @@
 ;;; Motion is swept: the robot passes through each cell between its position and its target, and
 ;;; stops just short of the first that blocks. Its own cell never blocks, so a thing that moves
 ;;; there cannot trap it. The world's flags say which cells block. If the robot would enter a cell
-;;; by less than the contact gap, it only touches it and continues.
+;;; by less than the contact gap, it only touches it and continues. A robot whose way is barred by
+;;; others that have yet to drive in this tick lets these go first. A robot that waits so is not
+;;; waited for: robots that would change places, or follow one another in a circle, are blocked.
 
 (declaim (inline cell-obstacle))
 (defun cell-obstacle (flag)
@@ -52,11 +54,35 @@ NIL; and whether the obstacle is in another column."
                     (<= (abs (- (+ x (* dx at)) (if back-x 0 (map-width map))))
                         (abs (- (+ y (* dy at)) (if back-y 0 (map-height map))))))))))
 
+(defgeneric drives-robot-p (event)
+  (:documentation "EVENT is pending on a robot. True if EVENT may drive the robot.")
+  (:method (event)
+    (declare (ignore event))
+    nil))
+
+(defun drive-early (robot)
+  "If ROBOT has yet to drive in this tick, let it drive now. Return true if so."
+  (let ((event (resource-event robot)) (agenda (timeline-agenda (timeline-of robot))))
+    (when (and event (due-event-p agenda event) (drives-robot-p event))
+      (run-early agenda event)
+      t)))
+
+(defun let-others-go-first (robot x y)
+  "Let robots in the cell that holds (X,Y), which bar the way of ROBOT, drive now if they have yet to
+drive in this tick. Return true if there were any."
+  (let* ((world (robot-world robot)) (index (map-index (world-map world) x y)) (bodies '()))
+    (when (and index (robot-body robot))
+      (do-cell-bodies (body index world)
+        (when (thing-obsmove-p body) (push (body-robot body) bodies)))
+      (some #'identity (mapcar #'drive-early (nreverse bodies))))))
+
 (defun pass-corner (robot x y column row)
   "If only a corner at (X,Y) blocks ROBOT, which is in the cell at COLUMN and ROW, move ROBOT past
 the corner. Return true if ROBOT moved."
   (let ((world (robot-world robot)))
     (multiple-value-bind (beyond-x beyond-y) (point-beyond-corner world +blocking+ x y column row)
+      (when (and beyond-x (blocked-cell-p world beyond-x beyond-y +blocking+))
+        (let-others-go-first robot beyond-x beyond-y))
       (unless (or (null beyond-x)
                   (blocked-cell-p world beyond-x beyond-y +blocking+))
         (setf (robot-x robot) beyond-x
@@ -104,6 +130,11 @@ Return the obstacle that stops ROBOT, or NIL."
            (if sideways
                (continue-move robot 0d0 dy left moved)
                (continue-move robot dx 0d0 left moved)))
+          ((and (eq block :thing)
+                (let-others-go-first robot
+                  (+ 0.5d0 cell-x (if sideways (signum dx) 0))
+                  (+ 0.5d0 cell-y (if sideways 0 (signum dy)))))
+           (continue-move robot dx dy (+ moved left) 0d0))
           ((and (if sideways
                     (may-cross-border-p y cell-y dy left)
                     (may-cross-border-p x cell-x dx left))
@@ -170,6 +201,12 @@ robot can drive along the border of two cells and stay in one cell."
           (robot-sin robot) (snap-heading-component (sine angle))))
   robot)
 
+(declaim (inline carry-body))
+(defun carry-body (robot)
+  "Move the body of ROBOT, if it has one, to the position of ROBOT."
+  (let ((body (robot-body robot)))
+    (when body (move-body body (robot-x robot) (robot-y robot)))))
+
 (defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))
   "Put ROBOT at (X,Y), in metres, heading ANGLE, at once; its odometers do not change."
   (setf (robot-x robot) (double x)
@@ -181,6 +218,7 @@ robot can drive along the border of two cells and stay in one cell."
         (robot-put-x robot) (robot-x robot)
         (robot-put-y robot) (robot-y robot))
   (incf (robot-placements robot))
+  (carry-body robot)
   (set-robot-angle robot angle))
 
 (defun robot-cell-index (robot)
@@ -252,10 +290,11 @@ contains the distance (reading 96)."
          (block (move-along-heading robot distance))
          (moved (abs (robot-moved robot)))
          (expected (if block moved (abs nominal)))
-         (dice (world-dice world :odometry))
+         (dice (robot-dice robot :odometry))
          (low (- moved (* (roll dice) (max 0d0 (- moved (* expected (- 1d0 noise)))))))
          (high (+ moved (* (roll dice) (max 0d0 (- (* expected (+ 1d0 noise)) moved))))))
     (declare (type double-float noise step nominal distance moved expected low high))
+    (carry-body robot)
     (setf (robot-drove-tick robot) (world-tick world))
     (if (minusp nominal)
         (add-distance-to-odometers robot (- high) (- low))
@@ -266,11 +305,10 @@ contains the distance (reading 96)."
   "Turn ROBOT for one tick by about ANGLE, in radians; the true angle is uniformly distributed
 within ROBOT-TURN-MAX-ERROR* of ANGLE. Store the bounds of the interval that the odometers read in
 ROBOT-TURNED-LOW and ROBOT-TURNED-HIGH."
-  (let* ((world (robot-world robot))
-         (size (abs (double angle)))
+  (let* ((size (abs (double angle)))
          (noise (noise-of-step robot-turn-max-error* size (robot-turn-angle-now robot)))
-         (turned (* size (+ 1d0 (roll-within noise (world-dice world :motion)))))
-         (dice (world-dice world :odometry))
+         (turned (* size (+ 1d0 (roll-within noise (robot-dice robot :motion)))))
+         (dice (robot-dice robot :odometry))
          (low (- turned (* (roll dice) (max 0d0 (- turned (* size (- 1d0 noise)))))))
          (high (+ turned (* (roll dice) (max 0d0 (- (* size (+ 1d0 noise)) turned))))))
     (when (minusp angle)

@@ -193,7 +193,7 @@ NAME is a symbol or a string."
 probability TYPE-FALSE-NEG*. Where there is no place, a random type is sensed with the probability
 TYPE-FALSE-POS* (reading 221)."
   (let ((place (robot-place-here robot))
-        (dice (world-dice (robot-world robot) :place)))
+        (dice (robot-dice robot :place)))
     (cond (no-sensor-error* (and place (place-type place)))
           (place (unless (chance type-false-neg* dice) (place-type place)))
           ((chance type-false-pos* dice)

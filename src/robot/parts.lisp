@@ -15,6 +15,7 @@
   (x 0d0 double-float "the x coordinate where the robot starts, in metres" :export)
   (y 0d0 double-float "the y coordinate where the robot starts, in metres" :export)
   (angle 0d0 double-float "the robot's heading at its start, in radians" :export)
+  (attributes '() list "the attributes of the robot's body, an object descriptor" :export)
   (parts '() list "a list (kind initarg value ...) for each of its parts" :export))
 
 (defmethod print-object ((blueprint blueprint) stream)
@@ -49,7 +50,12 @@
    (hands #() simple-vector "the vector of the robot's hands" :part :addition)
    (bins #() simple-vector "the vector of the robot's storage bins" :part :addition)
    (sensors #() simple-vector "the vector of the robot's parts of other kinds" :part :addition)
-   (mind nil (or null mind) "the resource that THINK occupies" :part :export))
+   (mind nil (or null mind) "the resource that THINK occupies" :part :export)
+   (body nil (or null body)
+         "the robot's body in a world with several robots; NIL if the robot is alone or a ghost"
+         :addition)
+   (dice-base 0 fixnum "the position of the robot's first dice in its world's dice set")
+   (key 0 (unsigned-byte 64) "the hash of the robot's full name"))
   (:state
    (x 0d0 double-float "the robot's true x coordinate, in metres" :addition)
    (y 0d0 double-float "the robot's true y coordinate, in metres" :addition)
@@ -167,10 +173,10 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
   "a storage bin, as (robot-storage-bin ROBOT 0) returns")
 
 (defmethod reference ((robot robot))
-  (list :robot (string (robot-name robot))))
+  (list :robot (robot-label robot)))
 
 (defmethod reference ((part part))
-  (list (make-keyword (type-of part)) (string (robot-name (part-robot part))) (part-index part)))
+  (list (make-keyword (type-of part)) (robot-label (part-robot part)) (part-index part)))
 
 (defmethod timeline-of ((world world))
   (world-timeline world))
@@ -285,7 +291,7 @@ the parts of this kind, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 ;;; Parts are printed with their numbers (manual E).
 
 (defmethod print-object ((robot robot) stream)
-  (print-named robot stream (symbol-name (robot-name robot))))
+  (print-named robot stream (robot-label robot)))
 
 (defmethod print-object ((mind mind) stream)
   (print-named mind stream (format nil "Mind of ~A" (mind-robot mind))))

@@ -107,11 +107,14 @@ rays meet within REACH columns and rows and that hold things."
                        when index collect index))))
 
 (defun things-in-cells (cells camera local)
-  "Return the things in CELLS that are local to the robot if LOCAL, else the others (reading 131)."
-  (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '()))
+  "Return the things in CELLS that are local to the robot if LOCAL, else the others (reading 131).
+Bodies of other robots count as things."
+  (let* ((robot (camera-robot camera)) (world (robot-world robot)) (things '())
+         (own-body (robot-body robot)))
     (dolist (index cells (nreverse things))
       (do-cell-things (thing index world)
-        (when (eq local (within-reach-p robot (thing-x thing) (thing-y thing)))
+        (when (and (not (eq thing own-body))
+                   (eq local (within-reach-p robot (thing-x thing) (thing-y thing))))
           (push thing things))))))
 
 (defun things-in-open-view (camera local)
@@ -172,7 +175,7 @@ rays meet within REACH columns and rows and that hold things."
   "Return a list of CAMERA's sightings of things of TYPE that fit SPECIFICATION: all sightings if
 ALL, else one. The list may contain false sightings."
   (let* ((world (robot-world (camera-robot camera)))
-         (dice (world-dice world :looking))
+         (dice (robot-dice (camera-robot camera) :looking))
          (demands (parse-specification specification))
          (finds (matching-things camera type demands dice))
          (phantoms (if (and (camera-location camera) (eq type :non-local))
@@ -201,7 +204,7 @@ ALL, else one. The list may contain false sightings."
   "Return a list of CAMERA's sightings, in the open, of places of the place type TYPE: all sightings
 if ALL, else one. The list may contain false sightings. The data of each sighting are NAME, the
 symbol by which the caller asked for TYPE (reading 74)."
-  (let* ((dice (world-dice (robot-world (camera-robot camera)) :looking))
+  (let* ((dice (robot-dice (camera-robot camera) :looking))
          (missing (sensing-error-probability miss-place-prob*))
          (finds (remove-if (lambda (place) (declare (ignore place)) (chance missing dice))
                            (places-in-view camera type)))
@@ -274,7 +277,7 @@ VALUE, or occasionally within the range of the wall parameters of MAP (reading 1
   "Take a view with CAMERA: return a list of one number for each pixel, from left to right, and
 store it as CAMERA-LAST-VIEW (manual 3.4.3)."
   (let* ((world (robot-world (camera-robot camera)))
-         (map (world-map world)) (dice (world-dice world :looking)))
+         (map (world-map world)) (dice (robot-dice (camera-robot camera) :looking)))
     (setf (camera-last-view-tick camera) (world-tick world)
           (camera-last-view camera)
           (loop for value in

@@ -131,7 +131,7 @@ DESIGNATOR to an estimate of this direction, without jumps of a full turn."
   "Return a new designator for SIGHTING, seen by CAMERA, or NIL if its thing is no longer there."
   (when (sighting-unchanged-p sighting camera)
     (let* ((robot (camera-robot camera))
-           (dice (world-dice (robot-world robot) :looking))
+           (dice (robot-dice robot :looking))
            (x (sighting-x sighting)) (y (sighting-y sighting))
            (distance (if (camera-location camera) 0d0 (distance-to robot x y)))
            (designator (add-designator robot :type (sighting-type sighting)

@@ -78,6 +78,24 @@
                   (< (abs (- (robot-sin robot) (sine (robot-angle robot)))) 1d-9))
              "the heading of ~A does not fit its cosine and sine" robot))
 
+(defun check-body (robot)
+  "Signal CONTRADICTION unless ROBOT has a body where it is and its own dice, or neither."
+  (let ((body (robot-body robot)) (world (robot-world robot)))
+    (must-hold (or (null body)
+                   (and (body-p body)
+                        (eq robot (body-robot body))
+                        (eq :floor (thing-location body))
+                        (= (robot-x robot) (thing-x body))
+                        (= (robot-y robot) (thing-y body))))
+               "the body of ~A is not where the robot is" robot)
+    (must-hold (and (eq (and body t)
+                        (and (rest (world-robots world)) (not (world-ghosts-p world))))
+                    (= (robot-dice-base robot)
+                       (if (rest (world-robots world))
+                           (position-of-dice (robot-full-name robot) (world-dice-names world))
+                           0)))
+               "~A has a body or dice although it is alone, or has none although it is not" robot)))
+
 (defun check-robot (robot world)
   "ROBOT and WORLD were read from a file. Signal an error, usually CONTRADICTION, unless ROBOT is a
 robot of WORLD in a state that a run can reach."
@@ -96,5 +114,6 @@ robot of WORLD in a state that a run can reach."
         do (check-contents hand (hand-contents hand) 1))
   (loop for bin across (robot-bins robot)
         do (check-contents bin (storage-bin-contents bin) (world-live-count world)))
+  (check-body robot)
   (check-designators robot)
   (check-odometers robot))

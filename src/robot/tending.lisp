@@ -203,7 +203,7 @@ approach does not count, because the approach itself reports it (reading 112)."
 ;; See readings 87 and 112.
 (defun update-robot-tracks (robot tick)
   (when (plusp (length (robot-designators robot)))
-    (loop with dice = (world-dice (robot-world robot) :tracking)
+    (loop with dice = (robot-dice robot :tracking)
           for camera across (robot-cameras robot)
           for designator = (camera-tracks camera)
           when designator
@@ -215,7 +215,7 @@ approach does not count, because the approach itself reports it (reading 112)."
 
 (defun update-tracks (world)
   "Update all tracks and designators in WORLD for this tick."
-  (dolist (robot (world-robots world))
+  (dolist (robot (robots-in-order world))
     (update-robot-tracks robot (world-tick world))))
 
 (defun tracks-in-progress-p (world)
@@ -227,8 +227,8 @@ approach does not count, because the approach itself reports it (reading 112)."
 (defun start-track (camera designator operation)
   "Make CAMERA track DESIGNATOR. When the track ends, call NOTIFY-TRACK-END (reading 142)."
   (unless (tracked-p designator)
-    (let ((world (robot-world (camera-robot camera))))
-      (refresh-once designator (world-tick world) (world-dice world :tracking))
+    (let ((robot (camera-robot camera)))
+      (refresh-once designator (world-tick (robot-world robot)) (robot-dice robot :tracking))
       ;; It may have been seen from quite another place.
       (setf (designator-swing designator) 0d0)))
   (setf (camera-angle camera) (designator-angle designator)
@@ -238,6 +238,6 @@ approach does not count, because the approach itself reports it (reading 112)."
   "Point CAMERA at what it tracks and end its track, because the robot has arrived (reading 108)."
   (let ((designator (camera-tracks camera)))
     (when (designator-denotation designator)
-      (refresh-designator designator (world-dice (robot-world (camera-robot camera)) :tracking))
+      (refresh-designator designator (robot-dice (camera-robot camera) :tracking))
       (setf (camera-angle camera) (designator-angle designator)))
     (lose-track camera)))

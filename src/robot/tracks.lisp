@@ -118,7 +118,7 @@ track is lost and no other camera tracks the designator, drop the designator."
 (defun watch-thing (thing old-location new-location)
   "Update the robots' designators after THING has moved. A move watcher of a world."
   (let ((by-hand (or (hand-p old-location) (hand-p new-location))))
-    (dolist (robot (world-robots (thing-world thing)))
+    (dolist (robot (robots-in-order (thing-world thing)))
       (when (plusp (length (robot-designators robot)))
         (dolist (designator (designators-of-thing robot thing))
           (unless (and new-location (valid-after-move-p designator by-hand))

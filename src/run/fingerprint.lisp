@@ -22,11 +22,6 @@
   "An alist of the kinds of definitions and their registries. Manipulations are not in the list:
 their methods are compared instead.")
 
-(defun qualified-name (symbol)
-  "Return a string that names SYMBOL with its package, for FIND-ROBOT and similar functions."
-  (format nil "~@[~A::~]~A" (and (symbol-package symbol) (package-name (symbol-package symbol)))
-          (symbol-name symbol)))
-
 ;;; Definitions in use, as lists (kind name).
 
 (defun names-used-by-things (simulation name entries)

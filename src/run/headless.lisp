@@ -20,6 +20,7 @@ simulation keeps a journal. THINKING is the thinking mode."
                   maps))
     (let ((world (make-world (first maps) :seed seed)))
       (dolist (blueprint blueprints) (make-robot blueprint world))
+      (arrange-robots world)
       (let ((simulation (make-simulation world)))
         (set-initial-thinking simulation thinking)
         (when journal (begin-journal simulation))

@@ -71,7 +71,9 @@ successor. Return SIMULATION."
   (let ((custody (timeline-custody (world-timeline world)))
         (variables (simulation-variables (world-simulation world))))
     (deferring-interrupts
-      (permitting-changes (world) (reset-world world :seed seed))
+      (permitting-changes (world)
+        (reset-world world :seed seed)
+        (arrange-robots world))
       (setf (world-timeline world) (make-timeline (map-name (world-map world)) custody)
             (simulation-variables (world-simulation world)) variables)))
   (world-simulation world))

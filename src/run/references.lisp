@@ -81,7 +81,7 @@ SIMULATION to the simulation."
   (append (list first) (butlast elements) (first (last elements))))
 
 (defun robot-in (simulation name)
-  (or (find name (simulation-robots simulation) :key #'robot-name :test #'same-name-p)
+  (or (find-robot-named name (simulation-robots simulation))
       (reject-name "robot in this simulation" name
                    (mapcar #'robot-name (simulation-robots simulation)))))
 
@@ -93,6 +93,10 @@ SIMULATION to the simulation."
 
 (define-dereference :robot (name)
   (robot-in simulation name))
+
+(define-dereference :body (name)
+  (or (robot-body (robot-in simulation name))
+      (reject-use "~A has no body in this run." name)))
 
 ;; The thing may have been destroyed before the entry was made; then a stand-in is made.
 (define-dereference :thing (serial)

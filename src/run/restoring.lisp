@@ -78,6 +78,29 @@ of each number, or NIL for an external object."
       (:list (list nil))
       (:agenda (make-agenda)))))
 
+(defun as-unsaved-slot (field)
+  "Return a copy of FIELD, the description of a slot, for a file without this slot."
+  (make-kind-slot (kind-slot-name field) :link (kind-slot-type field) (kind-slot-text field)
+                  (kind-slot-part-p field) (kind-slot-shared-p field) (kind-slot-initial field)
+                  (kind-slot-reader field) (kind-slot-writer field)))
+
+(defparameter *newer-slots*
+  '((ars-magna.world:world "GHOSTS-P" "DICE-NAMES")
+    (ars-magna.robot:robot "BODY" "DICE-BASE" "KEY"))
+  "Slots that versions before 1.11 did not save, as lists (type name...). Runs with one robot do not
+need them.")
+
+(defun without-newer-slots (fields type)
+  "Return FIELDS of structures of TYPE as they were in version 1.10."
+  (loop with newer = (rest (assoc type *newer-slots*))
+        for field in fields
+        collect (if (member (kind-slot-name field) newer :test #'string=)
+                    (as-unsaved-slot field)
+                    field)))
+
+(defun names-of-saved-slots (fields)
+  (field-names (remove-if-not #'saved-slot-p fields)))
+
 (defun saved-slots (type names)
   "Return the slots of structures of TYPE. Signals an error unless NAMES lists the slots to save."
   (unless (and (symbolp type)
@@ -85,8 +108,10 @@ of each number, or NIL for an external object."
                (typep (find-class type nil) 'structure-class)
                (savable-structure-type-p type))
     (error "the file has objects of a kind that is not loaded, ~A" (short-text type)))
-  (let ((fields (fields-of-type type)))
-    (unless (equal names (field-names (remove-if-not #'saved-slot-p fields)))
+  (let* ((fields (fields-of-type type)) (older (without-newer-slots fields type)))
+    (unless (equal names (names-of-saved-slots fields))
+      (when (equal names (names-of-saved-slots older))
+        (return-from saved-slots older))
       (error "its objects of the kind ~(~A~) have other slots than the kind that is loaded; ~
               another version of the simulator, or of the kind, saved the file"
              type))

@@ -9,7 +9,7 @@
 
 (defun view-without-effect (camera)
   "Return the current view of CAMERA, then restore the dice and the last view (reading 201)."
-  (let* ((dice (world-dice (robot-world (part-robot camera)) :looking))
+  (let* ((dice (robot-dice (part-robot camera) :looking))
          (state (dice-state dice))
          (last-view (camera-last-view camera))
          (tick (camera-last-view-tick camera)))

@@ -4,7 +4,7 @@
 
 (export '(event agenda make-agenda queue-event requeue-event +longest-delay+ cancel-event
           interrupt-event pending-event advance-agenda pending-events request-name
-          note-interruption interruption))
+          note-interruption interruption resource-key run-early due-event-p))
 
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
 ;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; later events wait
@@ -13,8 +13,10 @@
 ;;;
 ;;; Invariants: a bucket is NIL or the last of its events, which form a ring: next to the last is
 ;;; the first, and so on in the order of queueing. Within a tick, higher priorities run first and
-;;; equal ones in that order. A resource has at most one pending event. Cancelled events stay in
-;;; their bucket and are dropped when it comes up. Manual 3.8.
+;;; equal ones in that order. If there are several robots, those of equal priority run in the order
+;;; of their robots' turns, which differs from tick to tick; events without a robot run first. A
+;;; resource has at most one pending event. Cancelled events stay in their bucket and are dropped
+;;; when it comes up. Manual 3.8.
 
 (defconstant +page-bits+ 8)
 (defconstant +page-size+ (ash 1 +page-bits+))
@@ -53,6 +55,8 @@
   (beyond nil bucket :writable)
   (pending 0 fixnum "how many events are pending" :writable :export)
   (unequal 0 fixnum "how many of those have a priority other than 0" :writable)
+  (salt nil (or null (unsigned-byte 64)) "a number from which the order of robots in the current tick
+is computed, or NIL if there are not several robots" :writable :export)
   (claims (make-hash-table :test 'equal) hash-table "the pending event of each resource that is not
 a RESOURCE structure; lists and strings are the same resource if they look the same"))
 
@@ -180,15 +184,65 @@ RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is c
              do (run-if-pending agenda (shiftf event (event-next (the event event)))))
     (when event (run-events-in-order agenda event))))
 
+;;; Turns of robots. A robot that is barred by another that has yet to drive in the tick lets the
+;;; other go first: the event of the other runs early, and is skipped when its turn comes.
+
+(defgeneric resource-key (resource)
+  (:documentation "Return a 64-bit number that identifies the robot of RESOURCE, or 0 for none.")
+  (:method (resource)
+    (declare (ignore resource))
+    0))
+
+(declaim (inline turn-of-resource))
+(defun turn-of-resource (resource salt)
+  "Return a 64-bit number: in a tick with SALT, robots with lower numbers act first."
+  (let ((key (if resource (resource-key resource) 0)))
+    (declare (type (unsigned-byte 64) key salt))
+    (if (zerop key) 0 (mixed-word key salt))))
+
+(defconstant +turn-bits+ 41 "The number of bits of a turn that are compared.")
+(defconstant +position-bits+ (- 61 +turn-bits+) "The number of bits for a position in a bucket.")
+
+(defun sort-by-turn (events salt)
+  "Return EVENTS, a list, sorted by the turns of their robots in a tick with SALT; stable."
+  (declare #.*hot* (type list events))
+  (let* ((vector (coerce events 'simple-vector))
+         (order (make-array (length vector) :element-type 'fixnum)))
+    (declare (type simple-vector vector))
+    (dotimes (position (length vector))
+      (let ((turn (turn-of-resource (event-resource (svref vector position)) salt)))
+        (declare (type (unsigned-byte 64) turn))
+        (setf (aref order position)
+              (logior (ash (ash turn #.(- +turn-bits+ 64)) +position-bits+) position))))
+    (setf order (sort order #'<))
+    (loop for number across order
+          collect (svref vector (logand number #.(1- (ash 1 +position-bits+)))))))
+
+(defun due-event-p (agenda event)
+  "True if EVENT, which is queued or was queued in AGENDA, is still to run in the current tick."
+  (and (event-pending-p event)
+       (= (event-time event) (agenda-tick agenda))))
+
+(defun run-early (agenda event)
+  "Run EVENT, which is due, before its turn."
+  (run-if-pending agenda event))
+
+;; An event that ran early may have been queued again, for a later tick.
+(defun run-if-due (agenda event)
+  (when (= (event-time event) (agenda-tick agenda))
+    (run-if-pending agenda event)))
+
 (defun run-bucket (agenda last)
   (declare #.*hot* (type agenda agenda))
-  (let ((first (detach-ring last)))
+  (let ((first (detach-ring last)) (salt (agenda-salt agenda)))
     (cond ((eq first last) (run-if-pending agenda first))
-          ((zerop (agenda-unequal agenda)) (run-events-in-order agenda first))
-          (t (call-each (lambda (event) (run-if-pending agenda event))
-                        (stable-sort (loop for event = first then (event-next event)
-                                           while event collect event)
-                                     #'> :key #'event-priority))))))
+          ((and (zerop (agenda-unequal agenda)) (null salt)) (run-events-in-order agenda first))
+          (t (let ((events (loop for event = first then (event-next event)
+                                 while event collect event)))
+               (when salt (setf events (sort-by-turn events salt)))
+               (unless (zerop (agenda-unequal agenda))
+                 (setf events (stable-sort events #'> :key #'event-priority)))
+               (call-each (lambda (event) (run-if-due agenda event)) events))))))
 
 (defun advance-agenda (agenda)
   "Advance AGENDA to the next tick and run the events due in it."
@@ -225,7 +279,8 @@ RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is c
 ;; RESOURCE structures hold their pending events, so copying these copies that too.
 (defmethod copy-plan-value ((agenda agenda) fork)
   (let ((copy (record-copy agenda (make-agenda) fork)))
-    (setf (agenda-tick copy) (agenda-tick agenda))
+    (setf (agenda-tick copy) (agenda-tick agenda)
+          (agenda-salt copy) (agenda-salt agenda))
     (dolist (event (pending-events agenda) copy)
       (let ((twin (forked event fork)) (resource (event-resource event)))
         (mark-event-pending copy twin)

@@ -209,10 +209,23 @@ first; in each group, the oldest comes first."
   "At the end of this tick of TIMELINE, call the function named FUNCTION, after earlier functions."
   (push (cons function arguments) (timeline-notifications timeline)))
 
+(defun notifications-in-order (notifications salt)
+  "Return NOTIFICATIONS, the newest first, in the order in which they are made: the oldest first or,
+if there are several robots, by the turns of the robots in the tick with SALT."
+  (flet ((turn (notification)
+           (let ((event (second notification)))
+             (if (typep event 'event)
+                 (turn-of-resource (event-resource event) salt)
+                 0))))
+    (if (and salt (rest notifications))
+        (stable-sort (reverse notifications) #'< :key #'turn)
+        (reverse notifications))))
+
 (defun next-notification (timeline)
   (or (pop (timeline-due-notifications timeline))
       (progn (setf (timeline-due-notifications timeline)
-                   (reverse (shiftf (timeline-notifications timeline) '())))
+                   (notifications-in-order (shiftf (timeline-notifications timeline) '())
+                                           (agenda-salt (timeline-agenda timeline))))
              (pop (timeline-due-notifications timeline)))))
 
 (declaim (inline notifications-left-p deliver-notifications))

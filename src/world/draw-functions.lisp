@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(resolve-draw-function))
+(export '(resolve-draw-function descriptor-form))
 
 ;;; A value is a function, or a symbol that names one, which can be redefined. It must come from
 ;;; code: a definition, or a program that sets the attribute. Only names from code are called, so a

@@ -95,7 +95,9 @@ function that copies attachments."
     (let ((twin (twin thing)))
       (unless (symbolp (thing-location thing))
         (setf (thing-location twin) (forked (thing-location thing) copier)))
-      (setf (thing-contents twin) (mapcar #'twin (thing-contents thing))))))
+      (setf (thing-contents twin) (mapcar #'twin (thing-contents thing)))
+      (when (robot-body-p thing)
+        (setf (body-robot twin) (forked (body-robot thing) copier))))))
 
 (defun copy-stock (stock things copier)
   (let ((copy (make-stock)))
@@ -113,7 +115,8 @@ function that copies attachments."
       (let ((thing (svref old rank)))
         (when thing
           (setf (svref new rank) (copy-thing thing world copied))
-          (unless (uncontained-empty-thing-p thing) (push thing others)))))
+          (unless (and (uncontained-empty-thing-p thing) (not (robot-body-p thing)))
+            (push thing others)))))
     (setf (copier-objects copier) (cons old new))
     (dolist (thing others) (complete-thing-copy thing old new copier))))
 

@@ -274,8 +274,7 @@ that tick ATTACHMENT has no trial (manual 5.3.1). Return nothing. See reading 17
   (check-argument seed-world seed (integerp seed) "an integer")
   (dolist (group (world-kicker-groups world)) (setf (group-quantum group) 0))
   (setf (world-seed world) seed
-        (world-dice-set world) (cl:map 'simple-vector (lambda (purpose) (make-dice seed purpose))
-                                       +dice-purposes+))
+        (world-dice-set world) (make-dice-set seed (world-dice-names world)))
   world)
 
 ;; An origin without an attachment is a group that was read ahead.

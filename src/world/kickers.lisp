@@ -175,7 +175,8 @@ seed: those of CL:RANDOM, which is seeded in each tick, and those of (roll-betwe
 (defun set-kicker (thing kicker-name)
   "Attach the kicker KICKER-NAME, a symbol or a kicker, to THING (manual 5.3.1). Signals
 WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF while it runs. See reading 171."
-  (check-argument set-kicker thing (thing-p thing) (argument-type-text 'thing thing))
+  (check-argument set-kicker thing (and (thing-p thing) (not (body-p thing)))
+                  (argument-type-text 'thing thing))
   (let ((kicker (find-kicker kicker-name)))
     (changing ((world-of-living-thing thing) set-kicker thing (kicker-name kicker))
       (attach-kicker thing kicker))))
@@ -184,7 +185,8 @@ WRONG-ARGUMENT and UNKNOWN-NAME. Return the attached kicker, SELF while it runs.
 
 (defun call-put-kicker (thing name &key (prob 1) test body)
   "Attach a kicker NAME to THING only, as PUT-KICKER does. Without a BODY, remove the kicker NAME."
-  (check-argument put-kicker thing (thing-p thing) (argument-type-text 'thing thing))
+  (check-argument put-kicker thing (and (thing-p thing) (not (body-p thing)))
+                  (argument-type-text 'thing thing))
   (let ((kicker (and body (set-kicker-code (make-kicker name) (definition-title "put-kicker" name)
                                            prob test body))))
     (changing ((world-of-living-thing thing) call-put-kicker thing name

@@ -124,6 +124,8 @@ Return the world of HOLDER."
                      "a container, hand or storage bin, or a position"))
   (when (and (thing-p holder) (not (thing-alive-p holder)))
     (reject-use "~A has been destroyed." holder))
+  (when (body-p holder)
+    (reject-use "~A is a robot. Things can be in a robot's hands and bins, not in its body." holder))
   (when thing
     (unless (eq (location-world holder) (thing-world thing))
       (reject-use "~A cannot go into ~A, which is in another world." thing (location-name holder)))
@@ -137,7 +139,10 @@ Return the world of HOLDER."
   (check-argument-type operator "thing" thing 'thing)
   (unless (thing-world thing)
     (reject-use "~A is a prototype; make things from it with (new-thing ... :prototype)." thing))
-  (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing)))
+  (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing))
+  (when (body-p thing)
+    (reject-use "~A is a robot: its body moves only with the robot. PLACE-ROBOT puts a robot elsewhere."
+                thing)))
 
 (defun relocate (thing location &optional x y)
   "Put THING into LOCATION as PLACE-THING does, and call the move watchers."
@@ -204,9 +209,11 @@ Signals MISUSE for prototypes. Return nothing. See reading 168."
 
 (declaim (inline kickable-p free-point-p start-kick))
 (defun kickable-p (thing)
-  "True if THING is on the floor, or can get there because nothing around it is closed."
-  (or (eq :floor (thing-location thing))
+  "True if THING is on the floor, or can get there because nothing around it is closed. False for
+the body of a robot."
+  (or (and (eq :floor (thing-location thing)) (not (robot-body-p thing)))
       (and (thing-location (thing-outermost thing))
+           (not (eq :floor (thing-location thing)))
            (not (in-closed-holder-p thing)))))
 
 (defun free-point-p (world x y)

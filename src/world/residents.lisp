@@ -53,7 +53,8 @@ simulation or, without one, the resident worlds of all maps. Signals WRONG-ARGUM
   (loop for each in (worlds-to-search world)
         append (loop for rank below (world-rank-count each)
                      for thing = (thing-of-rank rank each)
-                     when (and thing (thing-named-p thing name)) collect thing)))
+                     when (and thing (not (robot-body-p thing)) (thing-named-p thing name))
+                       collect thing)))
 
 ;;; An unknown name may be a misspelling. Names that differ only in their digits, or in the number
 ;;; of a thing, such as "PEN#2", are names of several things.

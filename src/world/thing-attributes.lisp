@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(warn-of-unknown-attribute warn-of-misspellings))
+(export '(warn-of-unknown-attribute warn-of-misspellings checked-descriptor descriptor-p))
 
 (defun attribute-in-world-p (key world)
   (do-things (thing world)

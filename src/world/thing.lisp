@@ -3,7 +3,7 @@
 (in-package :ars-magna.world)
 
 (export '(location-contents location-position location-world location-closed-p location-full-p
-          location-name location-phrase thing thing-holders-text similar-domain-value
+          location-name location-phrase thing body-robot robot-body-p thing-holders-text similar-domain-value
           warn-of-unknown-substance))
 
 ;;; The location of a thing is :FLOOR (then it has a position), or its holder, a thing or, in the
@@ -105,6 +105,19 @@ the sizes of the things directly in it (a double-float, at least 0). Signals WRO
    (substance-parameter 0d0 double-float
                         "the parameter of the thing's :substance, 0 if unspecified" :addition)
    (rank 0 fixnum "the index of the thing in the vector of its world's things" :near)))
+
+;; Its position follows the robot's. Serial 0 in a world: bodies are not numbered.
+(addition body body-p)
+(define-kind (body :include thing :constructor (%make-body (name robot world)))
+    "The body of a robot in a world with several robots: a thing that robots see and that blocks
+them."
+  (:fixed
+   (robot nil t "the robot whose body it is" :addition)))
+
+(declaim (inline robot-body-p))
+(defun robot-body-p (thing)
+  "True if THING, which is in a world, is the body of a robot."
+  (zerop (thing-serial thing)))
 
 (defmethod reference ((thing thing))
   (and (thing-world thing) (list :thing (thing-serial thing))))

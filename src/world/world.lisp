@@ -3,6 +3,7 @@
 (in-package :ars-magna.world)
 
 (export '(world do-cell-things world-rank-count thing-of-rank do-things change-world changing
+          give-dice position-of-dice dice-index
           permitting-changes first-warning-for-key-p warning-given-p record-progress-checked
           progress-checked-p warn-once warn-of-angle-in-degrees))
 
@@ -16,6 +17,9 @@
   (:fixed
    (map nil map "the map that the world is of" :addition)
    (robots '() list "the list of the world's robots; the layer above keeps it" :part :addition)
+   (ghosts-p nil boolean "the world's robots neither block nor see each other" :addition)
+   (dice-names '() list "the full names of the robots that have their own dice, sorted; () if there
+is one robot" :export)
    (kicker-generation 0 fixnum "the *KICKER-GENERATION* of the kicker groups" :export)
    (timeline nil t "the timeline of the world, once there is one; the layer above keeps it" :export)
    (move-watchers '() list
@@ -38,6 +42,7 @@ in" :part)
    (writer nil t "the thread that is changing the world, or NIL" :export))
   ;; While it is NIL, each tick checks.
   (:link
+   (roster '() list "the world's robots, sorted by full name; () until it is needed" :export)
    (settled-p nil boolean "a tick has nothing to settle in the world: no robot has a designator, an
 ended track, a part inside of something, a hand with two things in it or with a watched
 grip" :export)))
@@ -56,17 +61,48 @@ grip" :export)))
 (defmethod digest-state ((dice dice) digest)
   (digest-add digest (dice-state dice)))
 
-(declaim (inline world-dice))
+(defun make-dice-of-robot (seed name)
+  "Return a vector of dice, one for each purpose, which depend on the integer SEED and on NAME, the
+full name of a robot."
+  (cl:map 'simple-vector
+          (lambda (purpose) (make-dice seed (format nil "~A of ~A" purpose name)))
+          +dice-purposes+))
+
+(defun make-dice-set (seed names)
+  "Return the dice of a world with SEED: one for each purpose, then those of the robots NAMES."
+  (apply #'concatenate 'simple-vector
+         (cl:map 'simple-vector (lambda (purpose) (make-dice seed purpose)) +dice-purposes+)
+         (loop for name in names collect (make-dice-of-robot seed name))))
+
+(defun position-of-dice (name names)
+  "Return the position of the dice of the robot NAME in the dice set of a world with dice for NAMES."
+  (* (length +dice-purposes+) (1+ (position name names :test #'string=))))
+
+(defun give-dice (world names)
+  "Give each of NAMES, full names of robots, its own dice in WORLD. Names that have dice keep them."
+  (let ((old (world-dice-set world)) (old-names (world-dice-names world))
+        (new (make-dice-set (world-seed world) names)))
+    (replace new old :end1 (length +dice-purposes+))
+    (dolist (name (intersection names old-names :test #'string=))
+      (let ((start (position-of-dice name old-names)))
+        (replace new old :start1 (position-of-dice name names)
+                         :start2 start :end2 (+ start (length +dice-purposes+)))))
+    (setf (world-dice-set world) new
+          (world-dice-names world) names)))
+
+(declaim (inline dice-index world-dice))
+(defun dice-index (purpose)
+  (ecase purpose
+    (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
+    (:handling 5) (:kickers 6) (:manipulations 7) (:user 8)))
+
 (addition world-dice)
 (defun world-dice (world purpose)
   "Return the dice of WORLD for PURPOSE: :motion, :odometry, :place, :looking, :tracking, :handling,
 :kickers, :manipulations or :user. Use only the dice for :user, and only in code that runs within
 ticks: kickers, manipulations and events. Numbers drawn elsewhere, as in continuations and plans,
 are not repeated in a replay."
-  (the dice (svref (world-dice-set world)
-                   (ecase purpose
-                     (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
-                     (:handling 5) (:kickers 6) (:manipulations 7) (:user 8)))))
+  (the dice (svref (world-dice-set world) (dice-index purpose))))
 
 (addition *world*)
 (defvar *world* nil
@@ -76,7 +112,8 @@ in the resident world of each map.")
 ;;; Things.
 
 (defmacro do-things ((thing world) &body body)
-  "Run BODY for each living THING in WORLD, in order of creation, except things that BODY makes."
+  "Run BODY for each living THING in WORLD, in order of creation, except things that BODY makes and
+bodies of robots."
   `(call-with-things (lambda (,thing) ,@body) ,world))
 
 (defun call-with-things (function world)
@@ -84,7 +121,8 @@ in the resident world of each map.")
   (let* ((stock (world-stock world)) (things (stock-things stock)))
     (dotimes (rank (stock-count stock))
       (let ((thing (svref things rank)))
-        (when (and thing (thing-alive-p thing)) (funcall function thing))))))
+        (when (and thing (thing-alive-p thing) (not (robot-body-p thing)))
+          (funcall function thing))))))
 
 (defun world-rank-count (world)
   "Return the number of ranks in WORLD, which includes the ranks of some destroyed things."
@@ -96,10 +134,10 @@ in the resident world of each map.")
 
 (addition world-thing-list)
 (defun world-thing-list (world)
-  "Return a fresh list of the things alive in WORLD, in order of creation."
-  (loop for rank below (world-rank-count world)
-        for thing = (thing-of-rank rank world)
-        when thing collect thing))
+  "Return a fresh list of the things alive in WORLD, in order of creation, without robots' bodies."
+  (let ((things '()))
+    (do-things (thing world) (push thing things))
+    (nreverse things)))
 
 (declaim (inline thing-cell-index))
 (defun thing-cell-index (thing)
@@ -109,8 +147,9 @@ in the resident world of each map.")
   "Remove THING from WORLD. If many things have been destroyed, renumber the ranks without gaps."
   (let ((stock (world-stock world)))
     (setf (svref (stock-things stock) (thing-rank thing)) nil)
-    (decf (world-live-count world))
-    (when (> (stock-count stock) (+ 64 (* 2 (world-live-count world))))
+    (unless (robot-body-p thing) (decf (world-live-count world)))
+    (when (> (stock-count stock) (+ 64 (* 2 (+ (world-live-count world)
+                                               (length (world-dice-names world))))))
       (close-rank-gaps stock (lambda (other)
                                (and (eq :floor (thing-location other))
                                     (thing-cell-index other)))))))
@@ -126,12 +165,13 @@ arrival. BODY must not move things."
 (addition things-at)
 (defun things-at (world x y)
   "Return a fresh list of the things on the floor of the cell of WORLD that holds the point (X, Y),
-in order of arrival. Return NIL if the point is outside the map. Signals WRONG-ARGUMENT."
+in order of arrival, without robots' bodies. Return NIL if the point is outside the map. Signals
+WRONG-ARGUMENT."
   (check-argument things-at world (world-p world) "a world, as (robot-world ROBOT) returns")
   (check-point 'things-at x y)
   (let ((index (map-index (world-map world) x y)) (things '()))
     (when index
-      (do-cell-things (thing index world) (push thing things)))
+      (do-cell-things (thing index world) (unless (robot-body-p thing) (push thing things))))
     (nreverse things)))
 
 ;;; Code within ticks (kickers, events, commands) changes the world directly. Changes by users from

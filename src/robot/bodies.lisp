@@ -1,0 +1,122 @@
+;;;; bodies.lisp -- several robots in a world: full names, bodies, dice, and whose turn it is.
+
+(in-package :ars-magna.robot)
+
+(export '(robot-full-name robot-label find-robot-named arrange-robots robots-in-order occupant-text turn-salt))
+
+;;; A robot alone in its world uses the world's dice and has no body, as in the manual. From two
+;;; robots on, each robot has its own dice, keyed by its full name, and a body, unless the world's
+;;; robots are ghosts. So another robot changes nobody's noise, and the order in which robots are
+;;; defined or listed has no effect.
+
+(addition robot-full-name)
+(defun robot-full-name (robot)
+  "Return the full name of ROBOT, a string: package and name, such as \"MY-PACKAGE::SCOUT\"."
+  (qualified-name (robot-name robot)))
+
+(defun robot-label (robot)
+  "Return the name of ROBOT as a string: the full name if another robot in the world has a name that
+differs only in its package, else the name without package."
+  (let* ((name (robot-name robot)) (world (robot-world robot)))
+    (if (and world
+             (rest (world-robots world))
+             (some (lambda (other)
+                     (and (not (eq name (robot-name other)))
+                          (same-name-p name (robot-name other))))
+                   (world-robots world)))
+        (robot-full-name robot)
+        (symbol-name name))))
+
+(defun find-robot-named (name robots)
+  "Return the robot of ROBOTS with NAME, or NIL. NAME is a symbol; or a string, a full name or a name
+without package. The name without package of several robots means the first."
+  (flet ((full-name-p (robot)
+           (string-equal name (robot-full-name robot))))
+    (or (and (symbolp name) (find name robots :key #'robot-name :test #'eq))
+        (and (stringp name) (find-if #'full-name-p robots))
+        (find name robots :key #'robot-name :test #'same-name-p))))
+
+(defun robots-in-order (world)
+  "Return a list of the robots in WORLD, sorted by their full names. Do not alter the list."
+  (let ((robots (world-robots world)))
+    (if (null (rest robots))
+        robots
+        (or (world-roster world)
+            (setf (world-roster world)
+                  (sort (copy-list robots) #'string< :key #'robot-full-name))))))
+
+(defmethod parts-to-digest ((world world) (parts list))
+  (if (and (rest parts) (robot-p (first parts)))
+      (robots-in-order world)
+      parts))
+
+;;; Dice.
+
+(declaim (inline robot-dice))
+(addition robot-dice)
+(defun robot-dice (robot purpose)
+  "Return the dice of ROBOT for PURPOSE: :motion, :odometry, :place, :looking, :tracking, :handling
+or :manipulations. They are the world's dice if ROBOT is alone in its world; see WORLD-DICE."
+  (the dice (svref (world-dice-set (the world (robot-world robot)))
+                   (+ (robot-dice-base robot) (dice-index purpose)))))
+
+(defun arrange-dice (world names)
+  (unless (equal names (world-dice-names world)) (give-dice world names))
+  (dolist (robot (world-robots world))
+    (setf (robot-dice-base robot) (if names (position-of-dice (robot-full-name robot) names) 0)
+          (robot-key robot) (text-hash (robot-full-name robot)))))
+
+;;; Bodies.
+
+(defmethod reference ((body body))
+  (list :body (robot-label (body-robot body))))
+
+(defmethod print-object ((body body) stream)
+  (print-named body stream (robot-label (body-robot body))
+               (concatenate 'string "BODY " (robot-label (body-robot body)))))
+
+(defun give-body (robot)
+  (setf (robot-body robot)
+        (make-body robot (robot-name robot) (blueprint-attributes (robot-blueprint robot))
+                   (robot-world robot) (robot-x robot) (robot-y robot))))
+
+(defun take-body (robot)
+  "Remove the body of ROBOT, if it has one."
+  (let ((body (shiftf (robot-body robot) nil)))
+    (when body (remove-body body))))
+
+(defun arrange-robots (world)
+  "The robots of WORLD have changed. Give them dice and bodies if there are several, else take both
+away. Call this function whenever robots have joined or left WORLD, and after a reset."
+  (setf (world-roster world) '())
+  (let* ((several-p (rest (world-robots world)))
+         (robots (robots-in-order world)))
+    (arrange-dice world (and several-p (mapcar #'robot-full-name robots)))
+    (if (and several-p (not (world-ghosts-p world)))
+        (dolist (robot robots) (unless (robot-body robot) (give-body robot)))
+        (mapc #'take-body robots))))
+
+(defun robot-at (world x y)
+  "Return a robot with a body in the cell of WORLD that holds the point (X,Y), or NIL."
+  (let ((index (map-index (world-map world) x y)))
+    (when index
+      (do-cell-bodies (body index world) (return-from robot-at (body-robot body))))))
+
+(defun occupant-text (world x y &optional robot)
+  "If another robot than ROBOT has its body in the cell of (X,Y) in WORLD, return a text that says
+so; else NIL."
+  (let ((other (robot-at world x y)))
+    (when (and other (not (eq other robot)))
+      (format nil "~A is in the cell of ~A" (robot-label other) (point-text x y)))))
+
+;;; Whose turn it is. Within a tick, robots act in an order that is drawn anew in each tick.
+
+(defmethod resource-key ((robot robot)) (robot-key robot))
+(defmethod resource-key ((part part)) (robot-key (part-robot part)))
+(defmethod resource-key ((mind mind)) (robot-key (mind-robot mind)))
+
+(defun turn-salt (world)
+  "Return a number that determines the order of the robots of WORLD in this tick, or NIL if there
+are fewer than two robots."
+  (and (world-dice-names world)
+       (mixed-word (world-seed world) (world-tick world))))
