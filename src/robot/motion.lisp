@@ -285,7 +285,7 @@ contains the distance (reading 96)."
          (step (tick-distance robot))
          (nominal (max (- step) (min limit step)))
          (noise (noise-of-step motion-noise* (abs nominal) (robot-speed-now robot)))
-         (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (world-dice world :motion)))
+         (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (robot-dice robot :motion)))
                                                  1d0)))))
          (block (move-along-heading robot distance))
          (moved (abs (robot-moved robot)))
