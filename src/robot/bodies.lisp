@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(robot-full-name robot-label find-robot-named arrange-robots robots-in-order occupant-text turn-salt))
+(export '(robot-full-name robot-label find-robot-named arrange-robots
+          robots-in-order occupant-text turn-salt))
 
 ;;; A robot alone in its world uses the world's dice and has no body, as in the manual. From two
 ;;; robots on, each robot has its own dice, keyed by its full name, and a body, unless the world's
@@ -28,8 +29,8 @@ differs only in its package, else the name without package."
         (symbol-name name))))
 
 (defun find-robot-named (name robots)
-  "Return the robot of ROBOTS with NAME, or NIL. NAME is a symbol; or a string, a full name or a name
-without package. The name without package of several robots means the first."
+  "Return the robot of ROBOTS with NAME, or NIL. NAME is a symbol, or a string: a full name or one
+without package. A name without package means the first robot with this name."
   (flet ((full-name-p (robot)
            (string-equal name (robot-full-name robot))))
     (or (and (symbolp name) (find name robots :key #'robot-name :test #'eq))
@@ -108,6 +109,11 @@ so; else NIL."
   (let ((other (robot-at world x y)))
     (when (and other (not (eq other robot)))
       (format nil "~A is in the cell of ~A" (robot-label other) (point-text x y)))))
+
+;; The position is that of the robot.
+(defmethod digest-state :after ((robot robot) digest)
+  (let ((body (robot-body robot)))
+    (when body (digest-add digest (thing-attributes body)))))
 
 ;;; Whose turn it is. Within a tick, robots act in an order that is drawn anew in each tick.
 

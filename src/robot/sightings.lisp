@@ -91,10 +91,7 @@ value of a random thing in WORLD."
     (append (notice-attributes (world-map world) (mapcar #'first readings)
                                (lambda (attribute)
                                  ;; NIL if there are none, or none has this rank.
-                                 (let* ((count (world-rank-count world))
-                                        (thing (and (plusp count)
-                                                    (thing-of-rank (roll-index count dice)
-                                                                   world))))
+                                 (let ((thing (random-thing world dice)))
                                    (values (and thing
                                                 (thing-attribute-value
                                                  thing (attribute-name attribute)))

@@ -55,8 +55,8 @@
   (beyond nil bucket :writable)
   (pending 0 fixnum "how many events are pending" :writable :export)
   (unequal 0 fixnum "how many of those have a priority other than 0" :writable)
-  (salt nil (or null (unsigned-byte 64)) "a number from which the order of robots in the current tick
-is computed, or NIL if there are not several robots" :writable :export)
+  (salt nil (or null (unsigned-byte 64)) "the number from which the order of robots in the
+current tick is computed, or NIL if there are not several robots" :writable :export)
   (claims (make-hash-table :test 'equal) hash-table "the pending event of each resource that is not
 a RESOURCE structure; lists and strings are the same resource if they look the same"))
 

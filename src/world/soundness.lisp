@@ -28,6 +28,7 @@ MET yet. Add the tags to MET."
                   (<= +initial-stock-size+ (length (stock-things stock)))
                   (= (length (stock-things stock)) (length (stock-nexts stock))
                      (length (stock-marks stock)))
+                  (= (stock-bodies stock) (count-if #'body-p (stock-things stock)))
                   (every #'null (subseq (stock-things stock) (stock-count stock))))
              "the world's vector of things cannot grow"))
 
@@ -53,11 +54,14 @@ MET yet. Add the tags to MET."
                                (thing-kickers thing))
              "the kickers of ~A belong to another thing" thing))
 
+(defun removed-body-p (thing)
+  (and (body-p thing) (not (thing-alive-p thing)) (null (thing-location thing))))
+
 (defun check-things (world)
   (let ((serials (make-hash-table)))
     (loop for rank below (world-rank-count world)
           for thing = (thing-of-rank rank world)
-          do (when thing
+          do (unless (or (null thing) (removed-body-p thing))
                (check-thing thing rank world)
                (unless (body-p thing)
                  (must-hold (null (gethash (thing-serial thing) serials))

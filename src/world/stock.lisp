@@ -6,6 +6,10 @@
 ;;; vectors of small numbers, which need few memory accesses and are copied at once. The RANK of a
 ;;; thing is its index in the vector of things. In the vectors of numbers a thing is its TAG, 1 more
 ;;; than its rank; 0 is no thing. The things on a cell's floor form a chain, in order of arrival.
+;;;
+;;; Bodies of robots come first in the chain of a cell, and their ranks do not count where ranks
+;;; matter: in digests, and when ranks are renumbered. A removed body keeps its rank until then. So
+;;; it makes no difference when a robot has joined the world before its first tick.
 
 (deftype tag () '(unsigned-byte 32))
 (deftype tags () '(simple-array tag (*)))
@@ -21,6 +25,7 @@
    (things (make-array +initial-stock-size+ :initial-element nil) simple-vector
            "the things by rank, in order of creation; NIL where one has been destroyed" :part)
    (count 0 fixnum "the number of ranks in use")
+   (bodies 0 fixnum "the number of ranks that robots' bodies have or had")
    (firsts (make-tag-vector 0) tags "by cell index, the tag of the first thing on the cell's floor")
    (nexts (make-tag-vector +initial-stock-size+) tags
           "by rank, the tag of the thing that arrived next in the same cell")
@@ -30,7 +35,8 @@
 ;;; Cells.
 
 ;; Inline: callers that move things call them by the thousand in a tick.
-(declaim (inline visit-things-in-cell append-to-cell take-from-cell cell-thing-flags))
+(declaim (inline visit-things-in-cell append-to-cell put-first-in-cell take-from-cell
+                 cell-thing-flags))
 (defun visit-things-in-cell (function index stock)
   "Call FUNCTION with each thing on the floor of the cell INDEX of STOCK, in order of arrival."
   (declare (type function function) (type cell-index index) (type stock stock))
@@ -49,6 +55,12 @@
               for next of-type tag = (aref nexts (1- tag))
               until (zerop next)
               finally (setf (aref nexts (1- tag)) (1+ rank))))))
+
+(defun put-first-in-cell (rank index stock)
+  "Put the thing with RANK, which is in no cell, before the things in the cell INDEX of STOCK."
+  (declare (type cell-index rank index) (type stock stock))
+  (setf (aref (stock-nexts stock) rank) (aref (stock-firsts stock) index)
+        (aref (stock-firsts stock) index) (1+ rank)))
 
 (defun take-from-cell (rank index stock)
   (declare (type cell-index rank index) (type stock stock))
@@ -85,6 +97,7 @@
 
 (defun add-to-stock (thing stock)
   "Give THING the next rank in STOCK. A full STOCK grows to twice its size."
+  (when (body-p thing) (incf (stock-bodies stock)))
   (let ((rank (stock-count stock)))
     (when (= rank (length (stock-things stock)))
       (setf (stock-things stock) (enlarge-vector (stock-things stock) (* 2 rank))
@@ -104,13 +117,13 @@ thing on the floor, else NIL."
          (new (make-stock)))
     (loop for rank below count
           for thing = (svref old rank)
-          do (when thing
+          do (when (and thing (thing-alive-p thing))
                (add-to-stock thing new)
                (setf (svref ranks rank) (thing-rank thing))))
     (flet ((new-tag (tag) (if (zerop tag) 0 (1+ (svref ranks (1- tag))))))
       (loop for rank below count
             for thing = (svref old rank)
-            for index = (and thing (funcall index-of thing))
+            for index = (and thing (thing-alive-p thing) (funcall index-of thing))
             do (when index
                  (when (= (1+ rank) (aref (stock-firsts stock) index))
                    (setf (aref (stock-firsts stock) index) (new-tag (1+ rank))))
@@ -120,9 +133,15 @@ thing on the floor, else NIL."
     (setf (stock-things stock) (stock-things new)
           (stock-nexts stock) (stock-nexts new)
           (stock-marks stock) (stock-marks new)
-          (stock-count stock) (stock-count new))))
+          (stock-count stock) (stock-count new)
+          (stock-bodies stock) (stock-bodies new))))
 
-;;; The contents for a digest: the things in each cell, then all things.
+(defun thing-rank-count (stock)
+  "Return the number of ranks in STOCK, without those of bodies."
+  (- (stock-count stock) (stock-bodies stock)))
+
+;;; The contents for a digest: the things in each cell, then all things. Bodies are digested with
+;;; their robots.
 
 (defmethod digest-state ((stock stock) digest)
   (digest-add digest (length (stock-firsts stock)))
@@ -130,7 +149,7 @@ thing on the floor, else NIL."
     (let ((things '()))
       (visit-things-in-cell (lambda (thing) (push thing things)) index stock)
       (digest-add digest (nreverse things))))
-  (digest-add digest (stock-count stock))
+  (digest-add digest (thing-rank-count stock))
   (loop for thing across (stock-things stock) repeat (stock-count stock)
-        do (digest-state thing digest))
+        do (unless (body-p thing) (digest-state thing digest)))
   digest)

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.world)
 
-(export '(world do-cell-things world-rank-count thing-of-rank do-things change-world changing
+(export '(world stock do-cell-things world-rank-count thing-of-rank random-thing do-things
+          change-world changing
           give-dice position-of-dice dice-index
           permitting-changes first-warning-for-key-p warning-given-p record-progress-checked
           progress-checked-p warn-once warn-of-angle-in-degrees))
@@ -62,7 +63,7 @@ grip" :export)))
   (digest-add digest (dice-state dice)))
 
 (defun make-dice-of-robot (seed name)
-  "Return a vector of dice, one for each purpose, which depend on the integer SEED and on NAME, the
+  "Return a vector of dice, one for each purpose. They depend on the integer SEED and on NAME, the
 full name of a robot."
   (cl:map 'simple-vector
           (lambda (purpose) (make-dice seed (format nil "~A of ~A" purpose name)))
@@ -75,7 +76,7 @@ full name of a robot."
          (loop for name in names collect (make-dice-of-robot seed name))))
 
 (defun position-of-dice (name names)
-  "Return the position of the dice of the robot NAME in the dice set of a world with dice for NAMES."
+  "Return where the dice of the robot NAME begin in the dice set of a world with dice for NAMES."
   (* (length +dice-purposes+) (1+ (position name names :test #'string=))))
 
 (defun give-dice (world names)
@@ -92,6 +93,7 @@ full name of a robot."
 
 (declaim (inline dice-index world-dice))
 (defun dice-index (purpose)
+  "Return the position of the dice for PURPOSE among the dice of a world or robot."
   (ecase purpose
     (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
     (:handling 5) (:kickers 6) (:manipulations 7) (:user 8)))
@@ -132,6 +134,18 @@ bodies of robots."
   "Return the thing of WORLD that has RANK, or NIL if it has been destroyed."
   (svref (stock-things (world-stock world)) rank))
 
+(defun random-thing (world dice)
+  "Return a random thing in WORLD, or NIL if there are none or a random rank has none."
+  (let* ((stock (world-stock world)) (count (thing-rank-count stock)))
+    (cond ((zerop count) nil)
+          ((zerop (stock-bodies stock)) (thing-of-rank (roll-index count dice) world))
+          (t (loop with left = (roll-index count dice)
+                   for rank from 0
+                   for thing = (thing-of-rank rank world)
+                   do (unless (body-p thing)
+                        (when (zerop left) (return thing))
+                        (decf left)))))))
+
 (addition world-thing-list)
 (defun world-thing-list (world)
   "Return a fresh list of the things alive in WORLD, in order of creation, without robots' bodies."
@@ -147,9 +161,8 @@ bodies of robots."
   "Remove THING from WORLD. If many things have been destroyed, renumber the ranks without gaps."
   (let ((stock (world-stock world)))
     (setf (svref (stock-things stock) (thing-rank thing)) nil)
-    (unless (robot-body-p thing) (decf (world-live-count world)))
-    (when (> (stock-count stock) (+ 64 (* 2 (+ (world-live-count world)
-                                               (length (world-dice-names world))))))
+    (decf (world-live-count world))
+    (when (> (thing-rank-count stock) (+ 64 (* 2 (world-live-count world))))
       (close-rank-gaps stock (lambda (other)
                                (and (eq :floor (thing-location other))
                                     (thing-cell-index other)))))))
