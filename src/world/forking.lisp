@@ -103,6 +103,7 @@ function that copies attachments."
   (let ((copy (make-stock)))
     (setf (stock-things copy) (record-finished-copy things copier)
           (stock-count copy) (stock-count stock)
+          (stock-bodies copy) (stock-bodies stock)
           (stock-firsts copy) (record-finished-copy (copy-seq (stock-firsts stock)) copier)
           (stock-nexts copy) (record-finished-copy (copy-seq (stock-nexts stock)) copier)
           (stock-marks copy) (record-finished-copy (copy-seq (stock-marks stock)) copier))
