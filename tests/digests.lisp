@@ -9,12 +9,16 @@
 (defun events-of (simulation)
   (time:pending-events (run:simulation-agenda simulation)))
 
+(defun digested-object-p (object)
+  "True if OBJECT is of a kind, and no body of a robot: what a body is follows from its robot."
+  (and (base:kind-of object) (not (world:body-p object))))
+
 (defun parts-in (object)
   "Return a list of the objects of kinds that belong to OBJECT directly."
   (loop for slot in (base:kind-slots (base:kind-of object))
         for content = (funcall (base:kind-slot-reader slot) object)
         when (base:kind-slot-part-p slot)
-          append (remove-if-not #'base:kind-of
+          append (remove-if-not #'digested-object-p
                                 (if (typep content 'sequence)
                                     (coerce content 'list)
                                     (list content)))))
