@@ -220,7 +220,8 @@
                    (:file "completing") (:file "recordings")
                    (:file "plotting") (:file "prompt")))
      (:module "lines" :serial t
-      :components ((:file "own-lines") (:file "running-lines") (:file "status-lines")
+      :components ((:file "own-lines") (:file "robots-lines") (:file "running-lines")
+                   (:file "status-lines")
                    (:file "map-lines") (:file "world-lines") (:file "plan-lines")
                    (:file "acting-lines") (:file "topics") (:file "help")
                    (:file "picture-lines") (:file "film-lines") (:file "plot-lines")

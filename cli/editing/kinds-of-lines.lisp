@@ -62,10 +62,24 @@ blanks; without a second quote it extends to the end of TEXT."
         (if quote (1+ quote) (length text)))
       (word-end text start)))
 
+(define-constant +all-robots+ "all:" :test #'string=
+  :documentation "The first word of a line for all robots. No blank is needed after it.")
+
+(defun for-all-robots-p (text)
+  "True if TEXT, which begins without blanks, is a line for all robots."
+  (and (<= (length +all-robots+) (length text))
+       (string-equal +all-robots+ text :end2 (length +all-robots+))))
+
+(defun first-word-end (text start)
+  "Return the end of the word in TEXT that begins at START, the first word of a line."
+  (if (for-all-robots-p (subseq text start))
+      (+ start (length +all-robots+))
+      (token-end text start)))
+
 (defun split-first-word (text)
   "Return the first word of TEXT, and the rest of TEXT."
   (let* ((start (position-if-not #'blank-character-p text))
-         (end (token-end text start)))
+         (end (first-word-end text start)))
     (values (subseq text start end) (subseq text end))))
 
 ;;;; What is pasted
@@ -80,7 +94,8 @@ blanks; without a second quote it extends to the end of TEXT."
 (defun message-p (text)
   (let* ((start (position-if-not #'blank-character-p text))
          (end (and start (position-if #'blank-character-p text :start start))))
-    (and end (< start (1- end)) (char= #\: (char text (1- end))))))
+    (and end (< start (1- end)) (char= #\: (char text (1- end)))
+         (not (for-all-robots-p (subseq text start))))))
 
 (defun warning-p (text)
   "True if TEXT, a line, is a warning or an error that the prompt has shown."

@@ -135,7 +135,7 @@ close the window at any time. The window closes by itself when the run is over."
   (let ((robot (if name (find-running-robot name) (session-robot))))
     (ensure-window-system)
     (open-display robot)
-    (format t "The window of ~A is open.~%" (robot-name robot))))
+    (format t "The window of ~A is open.~%" (robot-label robot))))
 
 (define-line "DISPLAY" (session) (:seeing)
     "Show the robot and its world in a window, as WINDOW does."

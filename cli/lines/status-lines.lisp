@@ -118,16 +118,26 @@
              (null (session-trial session)))
     (format t "~19A~A~%" "Time:" (time-description session simulation))))
 
-(define-line "STATUS" (session)
+(defun write-status-of-all (session robots)
+  (unless (report-all-statuses session robots)
+    (dolist (robot robots)
+      (write-under-robot robot (lambda () (write-status (status robot)))))
+    (write-why-no-ticks-pass session (current-simulation))))
+
+(define-line "STATUS" (session (which :robots "ALL, or the name of a robot; the robot commanded if
+left out" :optional))
     (:seeing)
     "Show the robot's state: position, last change of position (real and estimated), heading, speed,
 turning speed, what its cameras see now, the last place sensed, its designators, the commands in
 progress and who issued them, the last interruption, and the cost of thinking if it was changed. A
-line tells if no ticks pass now. In Lisp: (status)."
-  (let ((robot (session-robot)))
-    (with-time-stopped (or (report-status-object session robot)
-                           (progn (write-status (status robot))
-                                  (write-why-no-ticks-pass session (current-simulation)))))))
+line tells if no ticks pass now. STATUS ALL shows each robot of the run. In Lisp: (status)."
+  (let ((robot (session-robot)) (all-p (and which (string-equal which "all"))))
+    (when (and which (not all-p)) (setf robot (robot-here-named which)))
+    (with-time-stopped
+      (cond (all-p (write-status-of-all session (robots-in-order (robot-world robot))))
+            ((report-status-object session robot))
+            (t (write-status (status robot))
+               (write-why-no-ticks-pass session (current-simulation)))))))
 
 (defun thing-place-text (thing)
   (let ((location (thing-location thing)))
@@ -189,9 +199,17 @@ line tells if no ticks pass now. In Lisp: (status)."
         collect key
         collect (value-for-json key value)))
 
+(defun status-for-json (robot)
+  (let ((status (printing-plainly () (status robot))))
+    (object-for-json (list* :robot (string-downcase (robot-label robot)) (cddr status)))))
+
 (defun report-status-object (session robot)
   "If SESSION reports objects, report ROBOT's status and return true. The world must stand still."
   (let ((account (session-account session)))
     (when (reports-objects-p account)
-      (apply #'report-object account "status"
-             (object-for-json (printing-plainly () (status robot)))))))
+      (apply #'report-object account "status" (status-for-json robot)))))
+
+(defun report-all-statuses (session robots)
+  "If SESSION reports objects, report the statuses of ROBOTS in one object and return true."
+  (report-object (session-account session) "statuses"
+                 :robots (map 'vector #'status-for-json robots)))

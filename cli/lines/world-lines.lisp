@@ -33,12 +33,12 @@
                                        :rate (if old (simulation-rate old) *default-rate*))))
       (when old (end-replaced-run session old robot))
       (when (display-wanted-p session) (open-display-or-report robot '()))
-      (format t "~A in ~A.~%" robot-name (simulation-name *simulation*)))))
+      (format t "~A in ~A.~%" (robot-label robot) (simulation-name *simulation*)))))
 
 (defun choose-robot-name (names name)
   "Return the element of NAMES, robots of one world, that equals NAME; the first if NAME is NIL."
   (if name
-      (or (find name names :test #'same-name-p)
+      (or (find-robot-name name names)
           (reject-line "That world has no robot ~A, only ~{~A~^, ~}." (string-upcase name) names))
       (first names)))
 
@@ -51,8 +51,16 @@
       (write-worlds)))
 
 (defun resolve-robot-name (name)
-  (or (find name (robot-names) :test #'same-name-p)
+  "Return the name of the robot that the typed NAME means: one of this run, or else of any world."
+  (or (find-robot-name name (current-robot-names))
+      (find-robot-name name (robot-names))
       (reject-unknown-name "robot" name (robot-names) "ROBOT lists the robots of this world.")))
+
+(defun robot-here-named (name)
+  "Return the robot of this run that the typed NAME means."
+  (let ((name (resolve-robot-name name)))
+    (or (find name (simulation-robots *simulation*) :key #'robot-name)
+        (reject-robot-elsewhere name))))
 
 (defun write-robots ()
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))
@@ -68,11 +76,10 @@
 
 (define-line "ROBOT" (session (name :robot-here "the robot to command" :optional))
     (:seeing)
-    "List this world's robots, or command its robot NAME from now on. WORLD leads to other worlds."
-  (let ((name (and name (resolve-robot-name name))))
-    (cond ((null name) (write-robots))
-          ((member name (current-robot-names))
-           (import-robot-names (current-robot-names))
-           (setf *prompt-robot* name)
-           (note-robot-commanded))
-          (t (reject-robot-elsewhere name)))))
+    "List this world's robots, or command its robot NAME from now on. If several robots have one
+name, type the full name, with the package. WORLD leads to other worlds."
+  (cond (name
+         (setf *prompt-robot* (robot-name (robot-here-named name)))
+         (import-robot-names (current-robot-names))
+         (note-robot-commanded))
+        (t (write-robots))))

@@ -214,8 +214,13 @@ included. Return NIL if the choices are not known. May signal BAD-LINE, as witho
                            (or (uiop:string-suffix-p file "/") (uiop:string-suffix-p file ".lisp")))
                          (argument-choices :file session typed))))
 
-(define-argument-choices :robot-name (robot-names))
-(define-argument-choices :robot-here (current-robot-names))
+(defun names-as-typed (names)
+  "Return NAMES, names of robots, as texts to type."
+  (mapcar #'string-downcase (labels-of-names names)))
+
+(define-argument-choices :robot-name (names-as-typed (robot-names)))
+(define-argument-choices :robot-here (names-as-typed (current-robot-names)))
+(define-argument-choices :robots (cons "all" (names-as-typed (current-robot-names))))
 
 ;;; Files.
 

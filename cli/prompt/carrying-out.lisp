@@ -202,7 +202,8 @@ forms, and errors and warnings of COMPILE-FILE, as messages."
 (defun line-output-unbuffered-p (line)
   "True if the output of LINE is shown while LINE runs, not only at its end."
   (or (line-full-name line)
-      (member (line-name line) '("EVAL" "REPEAT" "TRIAL" "FORK" "WATCH" "WINDOW" "DISPLAY")
+      (member (line-name line)
+              '("ALL:" "EVAL" "REPEAT" "TRIAL" "FORK" "WATCH" "WINDOW" "DISPLAY")
               :test #'string=)))
 
 (defun text-width (session)
@@ -260,14 +261,17 @@ terminal, signal TROUBLE, because the prompt could not be printed, either."
   (write-on-fresh-line (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
                        (session-console session)))
 
+(defun text-with-advice (condition)
+  "Return the text of CONDITION, an error in a line, with a hint for an undefined function."
+  (let* ((advice (advice-on-function condition))
+         (*report-addition* (if advice (constantly nil) *report-addition*)))
+    (format nil "~A~@[ ~A~]" (condition-text condition) advice)))
+
 (defun call-reporting-session-errors (session function)
   (handler-case (funcall function)
     ((or error storage-condition) (condition)
       (recover-memory condition)
-      (handler-case (let* ((advice (advice-on-function condition))
-                           (*report-addition* (if advice (constantly nil) *report-addition*)))
-                      (report-session-error
-                       session (format nil "~A~@[ ~A~]" (condition-text condition) advice)))
+      (handler-case (report-session-error session (text-with-advice condition))
         (error (trouble) (report-printing-error session trouble))))))
 
 (defun running-command-name (robot)

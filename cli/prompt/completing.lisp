@@ -271,7 +271,7 @@ them if QUOTED-P is true (the argument begins with a double quote) or one of TEX
 
 (defun line-completions (session text start)
   (let* ((start (or (position-if-not #'blank-character-p text :start start) (length text)))
-         (end (if (< start (length text)) (token-end text start) start))
+         (end (if (< start (length text)) (first-word-end text start) start))
          (typed (subseq text start end)))
     (cond ((starts-with-subseq "(" typed) (lisp-completions session text (length text)))
           ((= end (length text))

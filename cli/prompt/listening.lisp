@@ -248,7 +248,8 @@ name of the robot to command there. Return NIL if there is no such run."
   "Tell the user of SESSION that the prompt continues with the robot ROBOT-NAME of SIMULATION, and
 show messages of SIMULATION. Do nothing if SESSION shows them already. Callable in any thread."
   (unless (eq simulation (session-simulation session))
-    (show-line-in-session session (format nil "From here on: ~A in ~A.~%" robot-name
+    (show-line-in-session session (format nil "From here on: ~A in ~A.~%"
+                                          (label-in-run robot-name simulation)
                                           (run-description simulation)))
     (stop-listening session)
     (listen-to session simulation)))

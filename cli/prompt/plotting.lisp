@@ -163,14 +163,14 @@ samples are taken while SHOWN-P is NIL. LOCK guards the curves and what observer
             (when (plotter-shown-p plotter)
               (take-samples plots simulation (plotter-lock plotter)))))))))
 
-(defun name-of-robot-to-plot ()
+(defun name-of-robot-commanded ()
   "Return the name of the robot that the prompt commands, or NIL if there is none."
   (let ((robot (and *simulation* (or (robot-of-prompt) (first (simulation-robots *simulation*))))))
     (and robot (robot-name robot))))
 
 (defun update-plots (session)
   "Take samples of what SESSION plots in the present run."
-  (follow-plots session *simulation* (name-of-robot-to-plot)))
+  (follow-plots session *simulation* (name-of-robot-commanded)))
 
 (defun set-plots-shown (session shown-p)
   "Take samples of what SESSION plots only if SHOWN-P. After this, FOLLOW-PLOTS starts again."

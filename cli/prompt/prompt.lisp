@@ -49,7 +49,7 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
   (unless (in-trial-or-fork-p session)
     (when (session-place session) (funcall (session-place session)))
     (continue-in-next-run session))
-  (setf (session-robot-name session) *prompt-robot*)
+  (setf (session-robot-name session) (or *prompt-robot* (name-of-robot-commanded)))
   (follow-simulation session)
   (update-plots session))
 

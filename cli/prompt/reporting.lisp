@@ -39,8 +39,16 @@ running form, or NIL if the number is not known."
   "Return the number of the running line of ACCOUNT; NIL before the first line, and for an option."
   (and (plusp (account-line account)) (account-line account)))
 
-(defun report-message (account kind text &optional (line (last-line-number account)))
-  (report-object account "message" :kind kind :text text :tick (current-tick) :line line))
+(defun report-message (account kind text &key (line (last-line-number account)) robot)
+  "Report a message. ROBOT is a text that names the robot of the message, or NIL."
+  (apply #'report-object account "message" :kind kind :text text :tick (current-tick) :line line
+         (and robot (list :robot robot))))
+
+(defun robot-of-message (message)
+  "Return a text that names the robot of MESSAGE if the run has several robots, else NIL."
+  (let ((name (message-robot message)) (run (or (message-run message) *simulation*)))
+    (and name run (rest (simulation-robots run))
+         (string-downcase (label-in-run name run)))))
 
 (defun report-values (account texts)
   (when (reports-objects-p account)
@@ -175,4 +183,5 @@ be NIL. TYPED-P is true for a line that is not Lisp."
   (when (reports-objects-p account)
     (dolist (message messages t)
       (report-message account (message-kind message) (message-text message)
-                      (line-number-of-message account message)))))
+                      :line (line-number-of-message account message)
+                      :robot (robot-of-message message)))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.cli)
 
-(export '(package-for-new-prompt))
+(export '(package-for-new-prompt label-in-run))
 
 ;;; The variable of a robot is a symbol of the package in which its world was written. ARS-USER
 ;;; imports the robots that the prompt may command, so that (robot-turn robbie 1 nil) works. A
@@ -30,7 +30,14 @@
       (unless status (import (list name) (user-package))))))
 
 (defun import-robot-names (names)
-  (mapc #'import-robot-name names))
+  "Import NAMES, the variables of the robots of a run, into ARS-USER, except those of robots with
+one name: these need their packages."
+  (dolist (name names)
+    (if (rest (robots-meant (symbol-name name) names :key #'identity))
+        (when (and (eq name (find-symbol (symbol-name name) (user-package)))
+                   (robot-of-other-world-p name))
+          (unintern name (user-package)))
+        (import-robot-name name))))
 
 (defun replace-robot-symbol (form)
   "Return FORM. If FORM is a DEFROBOT that would redefine a robot of another world, replace the
@@ -87,6 +94,23 @@ otherwise. Signals BAD-LINE if the file is not Lisp."
   (or (mapcar #'blueprint-name (blueprints-defined-by (lambda () (load-lisp path))))
       (reject-line "~A defines no robot; a world's file needs a DEFROBOT."
                    (native-name path))))
+
+(defun labels-of-names (names)
+  "Return a list of texts by which NAMES, names of robots, are told apart."
+  (mapcar (lambda (name) (name-label name names)) names))
+
+(defun label-in-run (name simulation)
+  "Return the text for NAME, the name of a robot of SIMULATION, which may be NIL."
+  (name-label name (and simulation (mapcar #'robot-name (simulation-robots simulation)))))
+
+(defun find-robot-name (name names)
+  "Return the element of NAMES, symbols, that the typed NAME means, or NIL. NAME is a full name or
+one without package. Signals BAD-LINE if NAME could mean several robots."
+  (let ((meant (robots-meant name names :key #'identity)))
+    (when (rest meant)
+      (reject-line "~A could be ~{~A~#[~; or ~:;, ~]~}. Type the full name." (string-upcase name)
+                   (labels-of-names meant)))
+    (first meant)))
 
 (defun robot-names ()
   (mapcar #'blueprint-name (all-blueprints)))

@@ -42,7 +42,7 @@ and returns the exit status. The file usage-NAME.txt describes the command.")
          (robots (and world (robot-names-in-world world))))
     (cond ((null robot) (first robots))
           ((null world) (resolve-robot-name robot))
-          ((find robot robots :test #'same-name-p))
+          ((find-robot-name robot robots))
           (t (reject-line "There is no robot ~A in ~A, but ~{~A~^, ~}." robot world robots)))))
 
 (defun load-files-before-prompt (names)

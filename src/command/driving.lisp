@@ -51,6 +51,11 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
            ,@body
            (unless (operation-finished-p ,operation) (repeat-step ,operation))))))
 
+;; Only another robot is named: what things and walls are is for cameras to find out.
+(defmethod error-cause-text ((code (eql :robot-blocked)) operation)
+  (let ((other (robot-in-way (operation-resource operation))))
+    (and other (format nil "~A is in the way" other))))
+
 (define-step drive-a-while (operation (robot-p (operation-resource operation)))
   "Drive the robot for a tick, and end OPERATION when its time is over."
   (with-drive-tick (block operation drive-remaining-time)

@@ -84,13 +84,19 @@ the command that it has interrupted, or NIL"))
 
 ;;; Ending.
 
+(defgeneric error-cause-text (code operation)
+  (:documentation "Return a text that says why OPERATION ends with the error CODE, or NIL.")
+  (:method (code operation)
+    (declare (ignore code operation))
+    nil))
+
 (defun error-text (operation code)
   (let* ((command (operation-command operation))
          (error-code (find code (command-errors command) :key #'error-code-keyword))
          (text (and error-code (error-code-text error-code))))
     (etypecase text
       (null (format nil "~A: ~A" (command-prefix command) code))
-      (string text)
+      (string (format nil "~A~@[: ~A~]" text (error-cause-text code operation)))
       (function (funcall text operation)))))
 
 (defun operation-formatter (control)

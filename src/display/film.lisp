@@ -78,14 +78,14 @@ differences from it. Other frames are written whole."
   (or (position-if (lambda (shown) (>= shown tick)) ticks)
       (1- (length ticks))))
 
-(defun write-moment (moment ticks several-p out)
+(defun write-moment (moment ticks robots out)
   (format out "{\"tick\":~A,\"frame\":~D,\"kind\":\"~(~A~)\",\"text\":"
           (number-text (moment-tick moment)) (frame-number-at (moment-tick moment) ticks)
           (moment-kind moment))
-  (write-quoted (moment-description moment several-p) out)
+  (write-quoted (moment-description moment robots) out)
   (write-char #\} out))
 
-(defun write-film-data (reel ticks rate moments several-p out)
+(defun write-film-data (reel ticks rate moments robots out)
   (write-string "var FILM = {\"rate\":" out)
   (write-number rate out)
   (write-string ",\"ticks\":" out)
@@ -95,7 +95,7 @@ differences from it. Other frames are written whole."
   (format out ",~%\"frames\":")
   (write-frames (reverse (reel-frames reel)) out)
   (format out ",~%\"moments\":")
-  (write-array (lambda (moment out) (write-moment moment ticks several-p out)) moments out)
+  (write-array (lambda (moment out) (write-moment moment ticks robots out)) moments out)
   (format out "};~%"))
 
 ;;; The page. The picture fills the room between title and controls, beside two foldable lists.
@@ -116,24 +116,25 @@ differences from it. Other frames are written whole."
                                       ("2" "twice") ("4" "4 times") ("10" "10 times"))
                 append (list value (if (string= value "1") " selected" "") text))))
 
-(defun write-sidebar (legend moments several-p out)
+(defun write-sidebar (legend moments robots out)
   "Write the part of the page beside the picture: the list of MOMENTS, and LEGEND, a text of HTML
-list items. If SEVERAL-P, name the robots of MOMENTS."
+list items. If ROBOTS, a list of names, has several, name the robots of MOMENTS."
   (format out "<aside>~%<details~:[ hidden~;~] open><summary>What happened</summary>~%~
                <ol id=\"moments\">~%" moments)
   (dolist (moment moments)
     (format out "<li><button><i class=\"~(~A~)\"></i>tick ~A: " (moment-kind moment)
             (number-text (moment-tick moment)))
-    (write-escaped-text (moment-description moment several-p) out)
+    (write-escaped-text (moment-description moment robots) out)
     (format out "</button></li>~%"))
   (format out "</ol>~%</details>~%<details~:[~; hidden~] open><summary>Legend</summary>~%~
                <ul id=\"legend\">~%~A</ul></details>~%</aside>~%"
           (string= "" legend) legend))
 
-(defun write-film (out title picture last-picture legend reel ticks rate moments several-p)
+(defun write-film (out title picture last-picture legend reel ticks rate moments robots)
   "Write the page of a film with TITLE to OUT. PICTURE is an SVG document of the first frame. Other
 frames replace its group `movers'. LAST-PICTURE, an SVG document of the last frame, is for browsers
-without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MOMENTS."
+without scripts. LEGEND has HTML list items. If ROBOTS, a list of names, has several, name the
+robots of MOMENTS."
   (format out "<!DOCTYPE html>~%<html lang=\"en\"><head><meta charset=\"utf-8\">~%")
   (format out "<meta name=\"viewport\" content=\"width=device-width\">~%<title>")
   (write-escaped-text title out)
@@ -142,11 +143,11 @@ without scripts. LEGEND has HTML list items. If SEVERAL-P, name the robots of MO
   (format out "</h1>~%<noscript><p>Enable scripts in your browser to play this film. Below are ~
                its first and its last frame.</p></noscript>~%")
   (format out "<main><div id=\"stage\">~%~A<noscript>~%~A</noscript></div>~%" picture last-picture)
-  (write-sidebar legend moments several-p out)
+  (write-sidebar legend moments robots out)
   (format out "</main>~%")
   (write-controls out)
   (format out "<script>~%")
-  (write-film-data reel ticks rate moments several-p out)
+  (write-film-data reel ticks rate moments robots out)
   (format out "</script>~%<script>~%~A</script>~%</body></html>~%" *film-script*))
 
 ;;; Making a film. Its legend stands beside the picture, so that the picture can be large. It lists
@@ -262,4 +263,5 @@ and the contents."
                       (append (moments-of-kinds kinds (append (funcall seen)
                                                               (moments-in-remarks journal until)))
                               moments)))
-                    (and (rest (snapshot-robots (film-cast-opening contents))) t))))))
+                    (and (rest (snapshot-robots (film-cast-opening contents)))
+                         (robots-of-journal journal)))))))

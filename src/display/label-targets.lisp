@@ -23,7 +23,7 @@ already has lower-case letters."
     (if (some #'lower-case-p text) text (string-downcase text))))
 
 (defun robot-title (image)
-  (drawn-name (robot-image-name image)))
+  (drawn-name (robot-image-label image)))
 
 (defun drawn-thing-name (image)
   (drawn-name (thing-name (thing-image-thing image))))

@@ -147,8 +147,13 @@ of them are moments, or lists (tick text [robot]), up to the tick END."
     (:part 2)
     (t 1)))
 
-(defun moment-description (moment several-p)
-  "Return a description of MOMENT. If SEVERAL-P, the description names the robot."
-  (format nil "~@[~A: ~]~A"
-          (and several-p (moment-robot moment) (drawn-name (moment-robot moment)))
-          (moment-text moment)))
+(defun moment-description (moment robots)
+  "Return a description of MOMENT. It names the robot if ROBOTS, the names of the robots of the run,
+are several."
+  (let ((name (moment-robot moment)))
+    (format nil "~@[~A: ~]~A"
+            (and name (rest robots)
+                 (drawn-name (name-label (or (first (robots-meant name robots :key #'identity))
+                                             name)
+                                         robots)))
+            (moment-text moment))))

@@ -7,10 +7,12 @@
 (defconstant +drawn-ray-angle-step+ 0.015d0
   "The angle between rays that find the edge of a field of view, in radians.")
 
-(defun opaque-cell-test (snapshot)
-  "Return a function of a cell's index that returns true if the cell blocks the view in SNAPSHOT."
+(defun opaque-cell-test (snapshot robot)
+  "Return a function of a cell's index that returns true if the cell blocks the view of ROBOT, an
+image, in SNAPSHOT."
   (let* ((map (snapshot-map snapshot)) (flags (map-flags map))
-         (hidden (loop for image across (snapshot-things snapshot)
+         (bodies (remove nil (mapcar #'robot-image-body (remove robot (snapshot-robots snapshot)))))
+         (hidden (loop for image in (append bodies (coerce (snapshot-things snapshot) 'list))
                        when (thing-image-obsview-p image)
                          collect (map-index map (thing-image-x image) (thing-image-y image)))))
     (lambda (index)
@@ -26,7 +28,7 @@
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
          (count (max 2 (ceiling width +drawn-ray-angle-step+))))
     (when (map-index map x y)
-      (let ((ends (ray-ends map (opaque-cell-test snapshot) x y first (/ width count) (1+ count))))
+      (let ((ends (ray-ends map (opaque-cell-test snapshot robot) x y first (/ width count) (1+ count))))
         (with-halo ((layer-ink :wedges))
           (draw-lines canvas draw-gcontext*
                       (points-to-pixels (append (list x y) ends (list x y)))))))))

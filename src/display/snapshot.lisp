@@ -36,10 +36,12 @@
 (define-record robot-image
   "The image of a robot: all that pictures show of the robot at one moment."
   (name nil t "the name of the robot, a symbol" :export)
+  (label "" string "the name of the robot as a text, different from those of other robots" :export)
   (position 0 t "the robot's position in its world's list of robots, which determines its look")
   (x 0d0 t "the robot's x coordinate, in metres" :export)
   (y 0d0 t "the robot's y coordinate, in metres" :export)
   (angle 0d0 t "the robot's heading, in radians" :export)
+  (body nil t "the image of the robot's body, or NIL if the robot has none" :export)
   (speed 0d0 t)
   (place nil t)
   (under-way nil t)
@@ -214,7 +216,8 @@ that one pass finds the old image of each thing."
 (defun image-of-robot (robot position history)
   (flet ((images (function parts) (cl:map 'list function parts)))
     (make-robot-image
-     :name (robot-name robot) :position position
+     :name (robot-name robot) :label (robot-label robot) :position position
+     :body (and (robot-body robot) (image-of-thing (robot-body robot)))
      :x (robot-x robot) :y (robot-y robot) :angle (robot-angle robot)
      :speed (robot-speed robot) :place (robot-last-place robot)
      :under-way (under-way-text robot) :interruption (interruption-text robot)
@@ -249,8 +252,8 @@ WORLD, is given, unchanged images are reused, which is faster."
 
 (defun snapshot-robot (snapshot name)
   "Return the image of the robot called NAME in SNAPSHOT; if there is none, of the first robot."
-  (or (find name (snapshot-robots snapshot) :key #'robot-image-name :test #'same-name-p)
-      (first (snapshot-robots snapshot))))
+  (first (or (robots-meant name (snapshot-robots snapshot) :key #'robot-image-name)
+             (snapshot-robots snapshot))))
 
 ;;; Parts of the map.
 

@@ -179,7 +179,7 @@ the glyph shows the substance by its colour."
 (defun robot-glyph (robot things)
   "Return the glyph of ROBOT, an image. THINGS are images of the things in the same block."
   (make-glyph :robot (arrow-character (robot-image-angle robot))
-              (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-name robot)
+              (format nil "~A (~,2F,~,2F)~@[ with ~{~A~^, ~}~]" (robot-image-label robot)
                       (zero-if-tiny (robot-image-x robot)) (zero-if-tiny (robot-image-y robot))
                       (remove-duplicates (loop for image in things
                                                collect (thing-name (thing-image-thing image)))

@@ -30,7 +30,7 @@
   (let* ((width (camera-image-field-of-view camera))
          (count (max 1 (ceiling width +ray-angle-step+)))
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
-         (opaque-p (opaque-cell-test (view-snapshot view))))
+         (opaque-p (opaque-cell-test (view-snapshot view) robot)))
     (remove-duplicates
      (loop for ray to count
            append (loop for index in (cells-along-ray (view-map view) opaque-p
@@ -39,7 +39,7 @@
                         when (block-number-of-cell view index) collect it)))))
 
 (defun cone-marks (view robot)
-  (let ((glyph (make-glyph :layer #\` (format nil "in view of ~A" (robot-image-name robot))
+  (let ((glyph (make-glyph :layer #\` (format nil "in view of ~A" (robot-image-label robot))
                            :yellow)))
     (loop for camera in (remove-if-not #'camera-outside-container (robot-image-cameras robot))
           append (loop for number in (cone-blocks view robot camera) collect (cons number glyph)))))
@@ -47,7 +47,7 @@
 ;;; Ways.
 
 (defun trail-marks (view robot)
-  (let ((glyph (make-glyph :layer #\+ (format nil "way of ~A" (robot-image-name robot)) :green)))
+  (let ((glyph (make-glyph :layer #\+ (format nil "way of ~A" (robot-image-label robot)) :green)))
     (do-trail ((robot-image-trail robot) x y)
           append (glyph-mark-at view x y glyph))))
 
@@ -62,7 +62,7 @@
             collect (list (+ x (* dx (/ i count))) (+ y (* dy (/ i count))))))))
 
 (defun planned-way-marks (view robot)
-  (let ((glyph (make-glyph :layer #\: (format nil "planned way of ~A" (robot-image-name robot))
+  (let ((glyph (make-glyph :layer #\: (format nil "planned way of ~A" (robot-image-label robot))
                            :cyan)))
     (loop for (from to) on (robot-image-planned-way robot)
           while to

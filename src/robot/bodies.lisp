@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(robot-full-name robot-label find-robot-named arrange-robots
+(export '(robot-full-name robot-label name-label find-robot-named robots-meant arrange-robots
           robots-in-order occupant-text turn-salt))
 
 ;;; A robot alone in its world uses the world's dice and has no body, as in the manual. From two
@@ -15,27 +15,34 @@
   "Return the full name of ROBOT, a string: package and name, such as \"MY-PACKAGE::SCOUT\"."
   (qualified-name (robot-name robot)))
 
+(defun name-label (name names)
+  "Return the symbol NAME as a string: with its package if a symbol in NAMES differs only in its
+package, else without."
+  (if (some (lambda (other) (and (not (eq name other)) (same-name-p name other))) names)
+      (qualified-name name)
+      (symbol-name name)))
+
 (defun robot-label (robot)
   "Return the name of ROBOT as a string: the full name if another robot in the world has a name that
 differs only in its package, else the name without package."
-  (let* ((name (robot-name robot)) (world (robot-world robot)))
-    (if (and world
-             (rest (world-robots world))
-             (some (lambda (other)
-                     (and (not (eq name (robot-name other)))
-                          (same-name-p name (robot-name other))))
-                   (world-robots world)))
-        (robot-full-name robot)
-        (symbol-name name))))
+  (let ((robots (and (robot-world robot) (world-robots (robot-world robot)))))
+    (name-label (robot-name robot) (and (rest robots) (mapcar #'robot-name robots)))))
+
+(defun robots-meant (name robots &key (key #'robot-name))
+  "Return a list of those of ROBOTS that NAME can mean: the one with the symbol or the full name
+NAME; if there is none, all with the name without package. KEY returns the symbol that names an
+element of ROBOTS."
+  (flet ((matching (test)
+           (remove-if-not (lambda (robot) (funcall test name (funcall key robot))) robots)))
+    (or (and (symbolp name) (matching #'eq))
+        (and (stringp name)
+             (matching (lambda (name symbol) (string-equal name (qualified-name symbol)))))
+        (matching #'same-name-p))))
 
 (defun find-robot-named (name robots)
   "Return the robot of ROBOTS with NAME, or NIL. NAME is a symbol, or a string: a full name or one
 without package. A name without package means the first robot with this name."
-  (flet ((full-name-p (robot)
-           (string-equal name (robot-full-name robot))))
-    (or (and (symbolp name) (find name robots :key #'robot-name :test #'eq))
-        (and (stringp name) (find-if #'full-name-p robots))
-        (find name robots :key #'robot-name :test #'same-name-p))))
+  (first (robots-meant name robots)))
 
 (defun robots-in-order (world)
   "Return a list of the robots in WORLD, sorted by their full names. Do not alter the list."

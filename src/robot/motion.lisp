@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(set-robot-pose set-robot-angle drive-tick turn-tick robot-speed-now speed-zero-p
+(export '(robot-in-way set-robot-pose set-robot-angle drive-tick turn-tick robot-speed-now speed-zero-p
           longest-step tick-distance robot-turn-angle-now record-movement-start robot-last-move
           robot-last-move-estimate robot-cell-index))
 
@@ -75,6 +75,17 @@ yet to drive in this tick. Return true if there were any."
       (do-cell-bodies (body index world)
         (when (thing-obsmove-p body) (push (body-robot body) bodies)))
       (some #'identity (mapcar #'drive-early (nreverse bodies))))))
+
+(defun robot-in-way (robot)
+  "Return the robot whose body is in a cell that ROBOT touches ahead, and blocks ROBOT; or NIL."
+  (let* ((reach (* 2 +contact-gap+)) (x (robot-x robot)) (y (robot-y robot))
+         (next-x (+ x (* reach (signum (robot-cos robot)))))
+         (next-y (+ y (* reach (signum (robot-sin robot)))))
+         (map (world-map (robot-world robot))))
+    (loop for (x y) in (list (list next-x y) (list x next-y) (list next-x next-y))
+          for other = (and (not (eql (map-index map x y) (robot-cell-index robot)))
+                           (robot-at (robot-world robot) x y))
+          when (and other (thing-obsmove-p (robot-body other))) return other)))
 
 (defun pass-corner (robot x y column row)
   "If only a corner at (X,Y) blocks ROBOT, which is in the cell at COLUMN and ROW, move ROBOT past

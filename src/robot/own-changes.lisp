@@ -135,7 +135,7 @@ WRONG-ARGUMENT (manual E). See reading 114."
                                (map-width map) (map-height map)))))
   (changing ((robot-world robot) place-robot robot x y angle)
     (set-robot-pose robot x y angle)
-    (warn-if-in-wall (princ-to-string (robot-name robot)) (robot-world robot) x y))
+    (warn-if-in-wall (robot-label robot) (robot-world robot) x y))
   robot)
 
 (define-operator 'place-robot '(robot number number angle) #'place-robot)

@@ -13,7 +13,7 @@
 of SIMULATION, or NIL if there are several."
   (let ((robots (simulation-robots simulation)))
     (if (moment-robot moment)
-        (find (moment-robot moment) robots :key #'robot-name :test #'same-name-p)
+        (find-robot-named (moment-robot moment) robots)
         (and (null (rest robots)) (first robots)))))
 
 (defun moment-with-position (moment simulation)
@@ -26,12 +26,15 @@ position of its robot, if the robot is known."
                      (robot-x robot) (robot-y robot) (robot-name robot)))))
 
 (defun check-moment-robots (moments simulation)
-  "Signal WRONG-ARGUMENT of SAVE-RUN-PICTURE unless the robots named in MOMENTS are in SIMULATION."
-  (dolist (moment moments)
-    (when (and (moment-robot moment) (not (robot-of-moment moment simulation)))
-      (reject-argument 'save-run-picture :moments (moment-robot moment)
-                       (format nil "names of robots of the run, if any: ~{~(~A~)~^, ~}"
-                               (mapcar #'robot-name (simulation-robots simulation)))))))
+  "Signal WRONG-ARGUMENT of SAVE-RUN-PICTURE unless each name in MOMENTS means one robot in
+SIMULATION."
+  (let ((robots (simulation-robots simulation)))
+    (dolist (moment moments)
+      (when (and (moment-robot moment)
+                 (/= 1 (length (robots-meant (moment-robot moment) robots))))
+        (reject-argument 'save-run-picture :moments (moment-robot moment)
+                         (format nil "names of robots of the run, if any: ~{~(~A~)~^, ~}"
+                                 (mapcar #'robot-label robots)))))))
 
 (defun replay-for-picture (journal until own)
   "Replay JOURNAL up to the tick UNTIL. Return four values: a snapshot of the end; for each robot, a
@@ -97,11 +100,11 @@ robot in the list of robots of its world."
   (loop with box = (points-to-pixels (shown-part snapshot))
         for way in ways
         for position from 0
-        for name = (first way)
+        for title = (drawn-name (name-label (first way) (mapcar #'first ways)))
         if (and (way-moved-p way) (way-visible-p (pieces-in-pixels (rest way)) box))
-          collect (moved-robot-entry (drawn-name name) position)
-        else if (find name (snapshot-robots snapshot) :key #'robot-image-name)
-               collect (robot-entry (drawn-name name) position)))
+          collect (moved-robot-entry title position)
+        else if (find (first way) (snapshot-robots snapshot) :key #'robot-image-name)
+               collect (robot-entry title position)))
 
 (defun way-start-visible-p (way snapshot)
   "True if the ring at the start of WAY is visible in the part of the map that SNAPSHOT shows."
@@ -157,17 +160,17 @@ and the other MOMENTS. If PART is NIL, return MOMENTS."
         (values (remove-if #'elsewhere-p moments) (remove-if-not #'elsewhere-p moments))
         moments)))
 
-(defun spots-and-notes-in (part moments limit several-p reach)
+(defun spots-and-notes-in (part moments limit robots reach)
   "Return the values of SPOTS-AND-NOTES for the MOMENTS in PART; a last note counts the others."
   (multiple-value-bind (moments others) (moments-in-part part moments)
-    (multiple-value-bind (spots notes) (spots-and-notes moments limit several-p reach)
+    (multiple-value-bind (spots notes) (spots-and-notes moments limit robots reach)
       (values spots
               (append notes (not-shown-note "Not shown, outside of this part" others))))))
 
 (defun run-picture-svg (snapshot ways moments &key limit title subtitle layers in-color scale)
   (multiple-value-bind (spots notes)
       (spots-and-notes-in (snapshot-part snapshot) (abridge-failures moments) limit
-                          (and (rest ways) t)
+                          (mapcar #'first ways)
                           ;; Rings nearer than this would look like one.
                           (/ (* 2 +ring-radius+) (drawn-scale scale snapshot layers)))
     (let ((more (run-legend-entries snapshot ways spots)))

@@ -23,9 +23,9 @@
                                (< (abs (- (moment-y moment) (spot-y spot))) reach)))
            spots))
 
-(defun group-moments (moments several-p reach)
+(defun group-moments (moments robots reach)
   "Return a list of groups of MOMENTS. Moments less than REACH metres apart are at the same spot. If
-SEVERAL-P is true, texts name the robots."
+ROBOTS, the names of the robots of the run, are several, texts name the robots."
   (let ((spots '()) (groups '()))
     (dolist (moment (stable-sort (copy-list moments) #'< :key #'moment-rank)
                     (nreverse groups))
@@ -33,7 +33,7 @@ SEVERAL-P is true, texts name the robots."
                         (or (spot-near moment spots reach)
                             (first (push (make-spot (moment-x moment) (moment-y moment))
                                          spots)))))
-             (words (moment-description moment several-p))
+             (words (moment-description moment robots))
              (group (or (find-if (lambda (other)
                                    (and (eq spot (moment-group-spot other))
                                         (string= words (moment-group-words other))))
@@ -124,11 +124,11 @@ failed.")
   (make-moment (moment-tick moment) (moment-kind moment) text (moment-x moment) (moment-y moment)
                (moment-robot moment) (moment-code moment)))
 
-(defun spots-and-notes (moments limit several-p reach)
+(defun spots-and-notes (moments limit robots reach)
   "Return two values: a list of the numbered spots of MOMENTS, and a list of at most LIMIT notes. A
 note is a list (number text); NUMBER may be NIL. Notes about the user's moments are always included;
-if LIMIT is NIL, so are all others. For SEVERAL-P and REACH see GROUP-MOMENTS."
-  (let* ((all (stable-sort (group-moments moments several-p reach) #'more-important-group-p))
+if LIMIT is NIL, so are all others. For ROBOTS and REACH see GROUP-MOMENTS."
+  (let* ((all (stable-sort (group-moments moments robots reach) #'more-important-group-p))
          (own (count 0 all :key #'moment-group-weight))   ; the user's own have the weight 0
          (count (if limit (min (max limit own) (length all)) (length all)))
          (told (stable-sort (subseq all 0 count) #'<
