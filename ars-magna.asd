@@ -341,7 +341,7 @@
                  (:file "ways-going") (:file "cli-plans") (:file "cli-colour")
                  (:file "cli-rewinding")
                  (:file "cli-films") (:file "cli-plots")
-                 (:file "cli-robots") (:file "cli-hostile")
+                 (:file "cli-robots") (:file "cli-all-robots") (:file "cli-hostile")
                  (:file "cli-debugger") (:file "cli-answers") (:file "cli-sessions")
                  (:file "cli-going-on")
                  (:file "experiment-replay")

@@ -147,7 +147,7 @@ If the fluent is only pulsed, the quantity is the number of pulses."
 ;;; PLOT.
 
 (defun write-plots (session)
-  (let ((all (current-plotted session *simulation* (name-of-robot-to-plot))))
+  (let ((all (current-plotted session *simulation* (name-of-robot-commanded))))
     (if all
         (loop for plotted in all
               for number from 1
@@ -163,7 +163,7 @@ If the fluent is only pulsed, the quantity is the number of pulses."
 (defun curve-ended-p (session quantity)
   "True if the curve of QUANTITY in the present run of SESSION has ended after an error."
   (let ((plotted (find quantity
-                       (current-plotted session *simulation* (name-of-robot-to-plot))
+                       (current-plotted session *simulation* (name-of-robot-commanded))
                        :key #'plotted-quantity)))
     (and plotted (end-of-curve-text plotted) t)))
 
@@ -251,9 +251,8 @@ a 256th part of the curve. So no peak is lost.")
 (define-line "PLOT-PICTURE" (session (file :file "a name that ends in .svg or .png"))
     (:seeing)
     "Save the plots in FILE, replacing it."
-  (session-robot)
-  (let ((charts (plotted-charts session *simulation* (name-of-robot-to-plot) 720))
-        (title (format nil "~(~A~) in ~(~A~), tick ~D" (name-of-robot-to-plot)
+  (let ((charts (plotted-charts session *simulation* (name-of-robot-commanded) 720))
+        (title (format nil "~(~A~) in ~(~A~), tick ~D" (robot-label (session-robot))
                        (simulation-name *simulation*) (simulation-tick *simulation*))))
     (unless charts (reject-line "Nothing is plotted. PLOT speed plots the robot's speed."))
     (format t "~A~%" (native-name (save-chart (path-of-name file)

@@ -163,7 +163,8 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
     (when (option-value :json options) (write-lisp-output-as-objects session))
     (report-object (session-account session) "begin"
                    :program (format nil "ARS MAGNA ~A" *version*)
-                   :robot (string-downcase robot-name)
+                   :robot (string-downcase
+                           (name-label robot-name (robot-names-in-same-world robot-name)))
                    :world (string-downcase (map-name (map-of-robot robot-name)))
                    :seed (option-value :seed options 0)
                    :rate (option-value :rate options))

@@ -153,7 +153,7 @@ calls COMMAND. Return 8 if no button calls COMMAND."
 (defun save-window-picture (window type)
   "Save a picture of the displays of WINDOW in the current directory, in a file of TYPE."
   (let ((file (save-snapshot (window-snapshot window) (window-robot window)
-                             (format nil "~(~A~)-~6,'0D.~A" (shown-robot-name window)
+                             (format nil "~(~A~)-~6,'0D.~A" (shown-robot-label window)
                                      (snapshot-tick (window-snapshot window)) type)
                              :layers (window-layers window)
                              :in-color (window-color-p window)

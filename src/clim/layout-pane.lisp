@@ -299,8 +299,8 @@ and the robot, if the run has several robots."
         (simulation (window-simulation window)))
     (format nil "World~@[: ~(~A~)~]~@[, ~A~]~@[, ~A of ~D robots~]" (and map (map-name map))
             (and simulation (ars-magna.cli:trial-or-fork-text simulation))
-            (and (rest (window-robot-names window)) (shown-robot-name window))
-            (length (window-robot-names window)))))
+            (and (rest (window-robots window)) (shown-robot-label window))
+            (length (window-robots window)))))
 
 (defun section-title (window section)
   (case section

@@ -52,11 +52,11 @@ format string for the camera's number, and LINE is one for the number and ARGUME
     (if color (format nil "((:color ~A))" (text-as-typed (second color))) "()")))
 
 (defun next-to-robot-p (image window)
-  "True if the thing of IMAGE is on the floor and within reach of the robot of WINDOW."
+  "True if the thing of IMAGE is on the floor, or a robot's body, within reach of WINDOW's robot."
   (let ((robot (find (shown-robot-name window) (simulation-robots (window-simulation window))
                      :key #'robot-name)))
     (and robot
-         (on-floor-p image window)
+         (or (body-p (thing-image-thing image)) (on-floor-p image window))
          (within-reach-p robot (thing-image-x image) (thing-image-y image)))))
 
 (defun search-offers (image window)
@@ -85,22 +85,26 @@ entry for each camera that does not track it."
                        collect (list (format nil "Track designator ~D with camera ~D" number index)
                                      (format nil "cam-track ~D ~D" index number)))))
 
+(defun approach-offer (camera)
+  (list (format nil "Approach it, guided by camera ~D" camera) (format nil "goto-desig ~D" camera)))
+
 (defun approach-and-grasp-offers (camera window)
-  (cons (list (format nil "Approach it, guided by camera ~
-                           ~D" camera) (format nil "goto-desig ~D" camera))
+  (cons (approach-offer camera)
         (loop for hand in (robot-image-hands (window-robot window))
               for index = (hand-image-index hand)
               unless (hand-image-contents hand)
                 collect (list (format nil "Grasp it with hand ~D" index)
                               (format nil "hand-grasp ~D ~D" index camera)))))
 
+(defun end-tracking-offer (camera)
+  (list (format nil "Stop tracking it with camera ~D" camera) (format nil "cam-untrack ~D" camera)))
+
 (defun tracked-thing-offers (numbers window &key held-p)
   "Return the menu entries for the cameras that track a thing. NUMBERS are those of its designators.
 If the robot itself holds the thing (HELD-P), leave out approaching and grasping."
   (loop for camera in (cameras-tracking numbers window)
         unless held-p append (approach-and-grasp-offers camera window)
-        collect (list (format nil "Stop tracking it with camera ~D" camera)
-                      (format nil "cam-untrack ~D" camera))))
+        collect (end-tracking-offer camera)))
 
 ;;; What is held.
 
@@ -146,7 +150,7 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
   (find (thing-image-thing image) (snapshot-things (window-snapshot window))
         :key #'thing-image-thing))
 
-(defmethod offers ((image thing-image) window)
+(defun thing-offers (image window)
   (let ((numbers (designator-numbers-of image window)))
     (append (when (on-floor-p image window)
               (list (go-there-offer (thing-image-x image) (thing-image-y image))))
@@ -155,6 +159,12 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
             (start-tracking-offers numbers window)
             (tracked-thing-offers numbers window :held-p (hand-image-holding image window))
             (inspection-offers (find-thing-form-text image)))))
+
+(defmethod offers ((image thing-image) window)
+  (let ((thing (thing-image-thing image)))
+    (if (body-p thing)
+        (offers (snapshot-robot (window-snapshot window) (robot-name (body-robot thing))) window)
+        (thing-offers image window))))
 
 ;;; Designators and parts.
 
@@ -191,13 +201,24 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
 
 ;;; Robots and cells.
 
+(defun body-offers (body window)
+  "Return the menu entries for BODY, the image of another robot's body, as a thing to see."
+  (let ((numbers (designator-numbers-of body window)))
+    (append (search-offers body window)
+            (start-tracking-offers numbers window)
+            (loop for camera in (cameras-tracking numbers window)
+                  collect (approach-offer camera)
+                  collect (end-tracking-offer camera)))))
+
 (defmethod offers ((image robot-image) window)
   (let ((form (format nil "(find-robot '~A)" (text-as-typed (robot-image-name image)))))
     (append (if (shown-robot-p window image)
                 '(("Show its status" "status") ("Stop" "stop") ("Turn about" "about-face")
                   ("Show at what place it is" "place"))
-                (list (list "Command this robot"
-                                (format nil "robot ~A" (text-as-typed (robot-image-name image))))))
+                (cons (list "Command this robot"
+                            (format nil "robot ~(~A~)" (robot-image-label image)))
+                      (and (robot-image-body image)
+                           (body-offers (robot-image-body image) window))))
             (inspection-offers form))))
 
 (defmethod offers ((cell cell) window)

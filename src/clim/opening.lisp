@@ -31,7 +31,7 @@ PLOTTER is what it plotted, or NIL."
     (set-initial-lines transcript (window-state-lines state))
     (when (window-state-left-run-p state)
       (write-to-transcript transcript
-                           (format nil "From here on: ~A in ~A.~%" (shown-robot-name window)
+                           (format nil "From here on: ~A in ~A.~%" (shown-robot-label window)
                                    (ars-magna.cli:run-description (window-simulation window)))))
     (when (window-state-typed state) (pass-key conversation (window-state-typed state)))))
 
@@ -125,7 +125,7 @@ or fork, the live run of the robot, if any."
 message says whether the run continues, and how to open another window."
   (format nil "The window of ~A has closed: ~A~:[~;. The run continues; the ~
                line WINDOW opens another~]"
-          (shown-robot-name window)
+          (shown-robot-label window)
           (one-line (text-of-condition condition))
           (and (window-simulation window) (not (run-over-p window)))))
 
@@ -178,7 +178,7 @@ run. Return NIL if there is no such robot."
     (unless (eq over (shiftf (window-known-over window) over))
       (write-in-window window "The run of ~A is over: ~A. This window shows its end. Start another ~
                                run with the line WORLD, or with SIMULATOR in Lisp.~%"
-                       (shown-robot-name window) reason))))
+                       (shown-robot-label window) reason))))
 
 (defun leave-finished-run (window reason)
   "Make WINDOW, whose run is over because of REASON, show another run. Close WINDOW if other windows

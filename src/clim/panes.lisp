@@ -298,7 +298,12 @@ visible part begins, the length of the visible part, and the length of the conte
   (:documentation "Return a key that identifies SUBJECT in all snapshots and is compared by EQUAL.
 Return NIL if SUBJECT cannot be selected.")
   (:method (subject) (declare (ignore subject)) nil)
-  (:method ((image thing-image)) (list :thing (thing-image-thing image)))
+  (:method ((image thing-image))
+    (let ((thing (thing-image-thing image)))
+      ;; A designator can denote a robot.
+      (if (body-p thing)
+          (list :robot (robot-name (body-robot thing)))
+          (list :thing thing))))
   (:method ((image robot-image)) (list :robot (robot-image-name image)))
   (:method ((image designator-image)) (list :designator (designator-image-number image)))
   (:method ((cell cell)) (list :cell (cell-x cell) (cell-y cell))))

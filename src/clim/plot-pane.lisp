@@ -96,7 +96,7 @@
 ;;;; The panel
 
 (defun plot-picture-line (window)
-  (format nil "plot-picture ~(~A~)-plots-~6,'0D.svg" (shown-robot-name window)
+  (format nil "plot-picture ~(~A~)-plots-~6,'0D.svg" (shown-robot-label window)
           (snapshot-tick (window-snapshot window))))
 
 (defun send-line-function (window line)

@@ -231,16 +231,22 @@ window has a title and the mouse shows what things are."
 (defun shown-robot-name (window)
   (watcher-robot (window-watcher window)))
 
-(defun window-robot-names (window)
+(defun shown-robot-label (window)
+  "Return the name of the robot that WINDOW shows, as a text."
+  (ars-magna.cli:label-in-run (shown-robot-name window) (window-simulation window)))
+
+(defun window-robots (window)
+  "Return the images of the robots of the run that WINDOW shows."
   (let ((snapshot (window-snapshot window)))
-    (and snapshot (mapcar #'robot-image-name (snapshot-robots snapshot)))))
+    (and snapshot (snapshot-robots snapshot))))
 
 (defun robot-rows (window)
   "Return the rows of the menu that chooses the robot to command at the prompt and to show."
-  (flet ((robot-row (name)
-           (make-row (format nil "~A" name)
-                     :tick (lambda () (same-name-p name (shown-robot-name window)))
+  (flet ((robot-row (image)
+           (make-row (robot-image-label image)
+                     :tick (lambda () (eq (robot-image-name image) (shown-robot-name window)))
                      :action (lambda ()
                                (run-line-at-prompt (window-conversation window)
-                                                   (format nil "robot ~(~A~)" name))))))
-    (cons (make-row "Which robot?") (mapcar #'robot-row (window-robot-names window)))))
+                                                   (format nil "robot ~(~A~)"
+                                                           (robot-image-label image)))))))
+    (cons (make-row "Which robot?") (mapcar #'robot-row (window-robots window)))))

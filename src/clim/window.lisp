@@ -59,12 +59,12 @@ queued. ERASED-P is true if all must be painted, changed or not. SNAPSHOT was pa
    (default (clim:make-pane 'layout-pane :name 'layout :contents (cons popup (make-window-parts)))))
   (:documentation "A window that shows the displays of a robot and has a prompt."))
 
-(defun window-title (robot-name &optional place)
-  (format nil "ARS MAGNA: ~A~@[, ~A~]" robot-name place))
+(defun window-title (robot-label &optional place)
+  (format nil "ARS MAGNA: ~A~@[, ~A~]" robot-label place))
 
 (defun title-now (window)
   (let ((simulation (window-simulation window)))
-    (window-title (watcher-robot (window-watcher window))
+    (window-title (shown-robot-label window)
                   (and (not (live-p simulation))
                        (not (simulation-over simulation))
                        (ars-magna.cli:run-description simulation)))))
@@ -80,7 +80,9 @@ queued. ERASED-P is true if all must be painted, changed or not. SNAPSHOT was pa
   "Return a new window, not yet visible, for the robot of WATCHER. OPTIONS are CLIM's options for
 frames, and :usual-magnification."
   (let ((window (apply #'clim:make-application-frame 'robot-window
-                       :pretty-name (window-title (watcher-robot watcher))
+                       :pretty-name (window-title (ars-magna.cli:label-in-run
+                                                   (watcher-robot watcher)
+                                                   (watcher-simulation watcher)))
                        :watcher watcher options)))
     (setf (window-conversation window)
           (make-window-conversation (make-transcript (lambda () (request-refresh window)))
