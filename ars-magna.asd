@@ -276,7 +276,7 @@
   :components ((:module "tests" :serial t
                 :components ((:file "clim-client") (:file "clim-window") (:file "clim-layout")
                              (:file "clim-view") (:file "clim-pointing")
-                             (:file "clim-holding") (:file "clim-choosing")
+                             (:file "clim-holding") (:file "clim-robots") (:file "clim-choosing")
                              (:file "clim-menus")
                              (:file "clim-progress") (:file "clim-plans") (:file "clim-plots")
                              (:file "clim-truths")

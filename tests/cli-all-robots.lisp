@@ -93,8 +93,8 @@ are symbols. Only the first twin has a hand."
           do (is (search word line) "~A" line))))
 
 (test all.prints-below-names-in-the-order-of-full-names
-  (is (equal '("LONER" "9.50" "TWINS-A::TWIN" "3.50" "TWINS-B::TWIN" "3.50")
-             (type-to-twins "all: (format t \"~,2F~%\" (robot-x (ars-magna.cli:session-robot)))"
+  (is (equal '("LONER" "9.5" "TWINS-A::TWIN" "3.5" "TWINS-B::TWIN" "3.5")
+             (type-to-twins "all: (out (robot-x (ars-magna.cli:session-robot)) t)"
                             "all: (values)")))
   (let ((lines (type-to-twins "status all")))
     (is (equal '("LONER" "Position:          (9.50,3.50)" "TWINS-A::TWIN"
@@ -142,7 +142,7 @@ are symbols. Only the first twin has a hand."
                  (completions "status ")))
       (is (equal '("all: status") (completions "all: stat")))
       (is (equal '("all:status") (completions "all:stat")))
-      (is (equal '("all:") (completions "al"))))))
+      (is (member "all:" (completions "al") :test #'string=)))))
 
 (test robots.of-one-name-have-no-short-variable
   "Otherwise it would be that of an arbitrary one."

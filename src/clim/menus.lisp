@@ -9,6 +9,9 @@
 
 ;;; A line without arguments runs at once; another is put where the user can type its arguments.
 
+(defparameter *lines-run-at-once* '("STATUS")
+  "The names of prompt lines that menus run at once, without their optional arguments.")
+
 (defparameter *prompt-menu-titles*
   '((:moving "Moving") (:camera "Cameras") (:hand "Hands") (:storage-bin "Storage bins")
     (:manipulating "Manipulating") (:seeing "Seeing") (:planning "Plans") (:running "Running")
@@ -28,9 +31,10 @@
                     (list name (lambda () (choose-prompt-line clim:*application-frame* name))))))
 
 (defun choose-prompt-line (window name)
-  "Run the prompt line NAME if it has no parameters, else put it in the input line for arguments."
+  "Run the prompt line NAME if it needs no arguments, else put it in the input line for arguments."
   (let ((conversation (window-conversation window)) (text (string-downcase name)))
-    (cond ((ars-magna.cli:line-parameters (ars-magna.cli:find-line-command name))
+    (cond ((and (ars-magna.cli:line-parameters (ars-magna.cli:find-line-command name))
+                (not (member name *lines-run-at-once* :test #'string=)))
            (replace-input-line conversation (format nil "~A " text))
            (focus-and-repaint (pane-named window 'interactor)))
           (t (run-line-at-prompt conversation text)))))
