@@ -58,6 +58,8 @@
      "STEP 10 lets 10 ticks pass, PAUSE and RESUME stop and start time.")
     (("RUN-PLAN" "BEGIN-PLAN")
      "PLAN name argument... carries out a plan; in Lisp it is (run-plan 'name argument...).")
+    (("EACH" "EVERY" "EVERYBODY" "BOTH")
+     "ALL: TURN 1 gives the command TURN 1 to each robot; ROBOT lists the robots.")
     (("HALT" "KILL" "ABORT") "STOP stops the robot, STOP-PLAN ends plans, PAUSE stops time.")
     (("LOAD" "SOURCE" "RUN")
      "(load \"FILE\") loads a Lisp file, PLAN name carries out a plan, WORLD name enters a world.")

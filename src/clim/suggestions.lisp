@@ -32,17 +32,20 @@
   (loop for dx from -1 to 1
         always (loop for dy from -1 to 1 always (free-cell-p map (+ x dx) (+ y dy)))))
 
-(defun thing-near-p (snapshot x y)
-  (find-if (lambda (image)
-             (< (max (abs (- x (thing-image-x image))) (abs (- y (thing-image-y image)))) 1))
-           (snapshot-things snapshot)))
+(defun obstacle-near-p (snapshot robot x y)
+  "True if a thing of SNAPSHOT or the body of another robot than ROBOT is near X, Y."
+  (flet ((near-p (image)
+           (< (max (abs (- x (thing-image-x image))) (abs (- y (thing-image-y image)))) 1)))
+    (or (some #'near-p (snapshot-things snapshot))
+        (some (lambda (other) (and (robot-image-body other) (near-p (robot-image-body other))))
+              (remove robot (snapshot-robots snapshot))))))
 
-(defun drivable-line-p (snapshot from-x from-y to-x to-y)
-  "True if no walls of SNAPSHOT are near the line from FROM-X, FROM-Y to TO-X, TO-Y, and no things
-near its second half, because the robot may start beside things."
-  (let ((points (points-on-line from-x from-y to-x to-y)))
+(defun drivable-line-p (snapshot robot to-x to-y)
+  "True if no walls of SNAPSHOT are near the line from ROBOT to TO-X, TO-Y, and no things or robots
+near its second half, because the robot may start beside them."
+  (let ((points (points-on-line (robot-image-x robot) (robot-image-y robot) to-x to-y)))
     (and (loop for (x y) in points always (free-square-p (snapshot-map snapshot) x y))
-         (loop for (x y) in (last points 10) never (thing-near-p snapshot x y)))))
+         (loop for (x y) in (last points 10) never (obstacle-near-p snapshot robot x y)))))
 
 (defun reachable-places (snapshot robot)
   "Return places (x y) of SNAPSHOT to which ROBOT can drive straight, the far ones first."
@@ -54,7 +57,7 @@ near its second half, because the robot may start beside things."
                                                               (+ (robot-image-angle robot)
                                                                  (* eighth pi 1/4))
                                                               distance))
-                       when (drivable-line-p snapshot from-x from-y x y) collect (list x y)))))
+                       when (drivable-line-p snapshot robot x y) collect (list x y)))))
 
 ;;; The suggestions.
 
