@@ -261,12 +261,6 @@ terminal, signal TROUBLE, because the prompt could not be printed, either."
   (write-on-fresh-line (concatenate 'string "*ERROR* -> " +unprintable+ '(#\Newline))
                        (session-console session)))
 
-(defun text-with-advice (condition)
-  "Return the text of CONDITION, an error in a line, with a hint for an undefined function."
-  (let* ((advice (advice-on-function condition))
-         (*report-addition* (if advice (constantly nil) *report-addition*)))
-    (format nil "~A~@[ ~A~]" (condition-text condition) advice)))
-
 (defun call-reporting-session-errors (session function)
   (handler-case (funcall function)
     ((or error storage-condition) (condition)

@@ -147,6 +147,12 @@ line commands, return the one whose name is the beginning of all the others. Sig
                  (fboundp symbol)
                  (format nil "There is ARS-WORLDS:~A." symbol)))))))
 
+(defun text-with-advice (condition)
+  "Return the text of CONDITION, an error in a line, with a hint for an undefined function."
+  (let* ((advice (advice-on-function condition))
+         (*report-addition* (if advice (constantly nil) *report-addition*)))
+    (format nil "~A~@[ ~A~]" (condition-text condition) advice)))
+
 ;;; Calls.
 
 (defun check-typed-call (form)

@@ -153,8 +153,9 @@ between, after which a hint says how to hide them.")
   "Return the text of MESSAGE for LISTENER. Add the robot's name if another robot's command has
 ended. Add file and line number to errors and warnings in a script."
   (let* ((own (listener-robot-name listener)) (name (message-robot message))
-         (text (format nil "~@[~(~A~): ~]~A" (and own name (not (eq own name))
-                                                  (label-in-run name (or (message-run message) *simulation*)))
+         (run (or (message-run message) *simulation*))
+         (text (format nil "~@[~(~A~): ~]~A"
+                       (and own name (not (eq own name)) (label-in-run name run))
                        (message-text message)))
          (account (listener-account listener)))
     (if (member (message-kind message) '(:error :warning))

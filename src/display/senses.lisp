@@ -28,7 +28,8 @@ image, in SNAPSHOT."
          (first (- (+ (robot-image-angle robot) (camera-image-angle camera)) (/ width 2)))
          (count (max 2 (ceiling width +drawn-ray-angle-step+))))
     (when (map-index map x y)
-      (let ((ends (ray-ends map (opaque-cell-test snapshot robot) x y first (/ width count) (1+ count))))
+      (let ((ends (ray-ends map (opaque-cell-test snapshot robot)
+                            x y first (/ width count) (1+ count))))
         (with-halo ((layer-ink :wedges))
           (draw-lines canvas draw-gcontext*
                       (points-to-pixels (append (list x y) ends (list x y)))))))))
