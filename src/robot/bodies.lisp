@@ -36,6 +36,7 @@ element of ROBOTS."
            (remove-if-not (lambda (robot) (funcall test name (funcall key robot))) robots)))
     (or (and (symbolp name) (matching #'eq))
         (and (stringp name)
+             (search "::" name)
              (matching (lambda (name symbol) (string-equal name (qualified-name symbol)))))
         (matching #'same-name-p))))
 
