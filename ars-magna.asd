@@ -53,7 +53,8 @@
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command") (:file "error-codes") (:file "operation")
                  (:file "issuing") (:file "failures") (:file "define-command") (:file "turning")
-                 (:file "driving") (:file "hands") (:file "inserting") (:file "patterns")
+                 (:file "driving") (:file "hands") (:file "inserting") (:file "giving")
+                 (:file "patterns")
                  (:file "manipulations") (:file "manipulating") (:file "looking")
                  (:file "withdrawing") (:file "approaching") (:file "thinking")
                  (:file "soundness")))

@@ -37,9 +37,16 @@ typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE
   (or (find-designator robot datum)
       (reject-line "There is no designator ~S. STATUS lists the designators." datum)))
 
+(defun keyword-of-symbol (datum)
+  (if (and datum (symbolp datum)) (make-keyword (symbol-name datum)) datum))
+
 (defmethod read-argument ((type (eql :designator-type)) datum robot)
   (declare (ignore robot))
-  (if (and datum (symbolp datum)) (make-keyword (symbol-name datum)) datum))
+  (keyword-of-symbol datum))
+
+(defmethod read-argument ((type (eql :receiving-part)) datum robot)
+  (declare (ignore robot))
+  (keyword-of-symbol datum))
 
 (defun typed-by-number-p (type)
   (or (member type '(:designator :destination))
@@ -53,6 +60,9 @@ typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE
 
 (defmethod argument-description ((type (eql 'designator-type)))
   "local or non-local")
+
+(defmethod argument-description ((type (eql 'receiving-part)))
+  "hand or bin")
 
 ;;; The prompt's own types.
 
@@ -197,6 +207,7 @@ included. Return NIL if the choices are not known. May signal BAD-LINE, as witho
 (define-argument-choices :designator (designator-numbers))
 (define-argument-choices :destination (designator-numbers))
 (define-argument-choices :designator-type '(local non-local))
+(define-argument-choices :receiving-part '(hand bin))
 (define-argument-choices :odometer-part '(:pos :ang))
 (define-argument-choices :place-type (mapcar #'place-type-name (all-place-types)))
 (define-argument-choices :rate '(free))

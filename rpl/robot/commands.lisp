@@ -99,6 +99,11 @@
   (:error hand-error*)
   (:pulse hand-moved*))
 
+(define-outcome (hand-give) ()
+  (:when (member err '(nil :not-grasping)) (:set hand-grasping* nil))
+  (:error hand-error*)
+  (:pulse hand-moved*))
+
 (define-outcome (hand-grasp-check) ()
   (:when (eq err :not-grasping) (:set hand-grasping* nil))
   (:error hand-error*)

@@ -80,7 +80,8 @@ only DESIGNATOR, with PROBABILITY."
 (defun grasp (hand thing dice)
   "Let HAND grasp THING (NIL: a false sighting). Return an error code or NIL (readings 151, 231)."
   (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
-        ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
+        ((or (body-p thing) (> (thing-total-weight thing) (hand-strength hand)))
+         :insufficient-strength)
         (t (move-thing thing hand)
            nil)))
 
@@ -91,6 +92,13 @@ only DESIGNATOR, with PROBABILITY."
         :missed-grasp
         (prog1 (grasp hand thing dice)
           (drop-designators-by-chance designator prob-grasp-lose-desig* dice :silently t)))))
+
+(defun insufficient-strength-text (operation)
+  (let* ((designator (first (last (operation-arguments operation))))
+         (thing (designator-denotation designator)))
+    (format nil "~A is not strong enough~@[: ~A is a robot, which no hand can lift~]"
+            (operation-resource operation)
+            (and (body-p thing) (body-robot thing)))))
 
 (define-command hand-grasp-desig (operation (hand hand)
                                   (camera camera "a camera that tracks the designator")
@@ -104,7 +112,7 @@ only DESIGNATOR, with PROBABILITY."
               (:non-local-grasp "Designator is not local")
               (:not-tracked (operation-formatter "~*~A is not tracking ~A"))
               (:missed-grasp (operation-formatter "~A missed"))
-              (:insufficient-strength (operation-formatter "~A is not strong enough")))
+              (:insufficient-strength #'insufficient-strength-text))
      (:report (designator)
               (format nil "~A grasped ~A" (operation-resource operation)
                       (hand-holding (operation-resource operation)))))

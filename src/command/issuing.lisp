@@ -24,6 +24,19 @@
                        robot's cameras~]; (counterpart OBJECT FORK) returns the object of a fork."
                       (command-name command) argument resource (designator-p argument)))))))
 
+;; Manipulations, and commands that users define, may be for two robots.
+(defun check-own-arguments (command resource arguments)
+  "Signal MISUSE if a part or designator in ARGUMENTS belongs to another robot than RESOURCE."
+  (unless (or (command-guarded-p command) (eq :manipulating (command-family command)))
+    (let ((robot (resource-robot resource)))
+      (dolist (argument arguments)
+        (unless (member (argument-robot argument) (list nil robot))
+          (check-not-retired (argument-robot argument) (command-name command))
+          (reject-use "~(~A~): ~A belongs to ~A, but ~A needs ~:[a part of its own~;a designator ~
+                       from a search of its own cameras~]."
+                      (command-name command) argument (argument-robot argument) robot
+                      (designator-p argument)))))))
+
 ;;; Warnings given once for each name.
 
 (defun continuation-arguments (command)
@@ -162,16 +175,6 @@ ARGUMENTS, while the same turn is in progress without a continuation. The turn t
                             issue the command again in its (continuation ~(~A~) ...)."
                        (command-name command) ticks (continuation-arguments command)))))
 
-;; Manipulations, and commands that users define, may be for two robots.
-(defun warn-of-other-owners (command robot arguments)
-  (unless (or (command-guarded-p command) (eq :manipulating (command-family command)))
-    (dolist (argument arguments)
-      (let ((owner (argument-robot argument)))
-        (unless (member owner (list nil robot))
-          (warn-once (list :owner (command-name command) (robot-name owner)) (robot-world robot)
-                     (format nil "~(~A~): ~A belongs to ~A, not to ~A."
-                             (command-name command) argument owner robot)))))))
-
 (defun warn-of-arguments (command world arguments)
   (loop for spec in (command-parameters command)
         for argument in arguments
@@ -285,9 +288,10 @@ plans, because running a plan passes ticks."
 (defun issue (command resource arguments continuation)
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked. Copy the lists in ARGUMENTS.
 CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
-if the robot's run is over, or if an argument belongs to another run."
+if the robot's run is over, or if an argument belongs to another run or another robot."
   (check-not-retired resource (command-name command))
   (check-same-run command resource arguments)
+  (check-own-arguments command resource arguments)
   (let* ((robot (resource-robot resource))
          (world (robot-world robot))
          (timeline (world-timeline world))
@@ -304,7 +308,6 @@ if the robot's run is over, or if an argument belongs to another run."
     (warn-of-arguments command world arguments)
     (record-bindings command world)
     (record-other-run-request world)
-    (warn-of-other-owners command robot arguments)
     (warn-of-continuation command world continuation)
     (warn-if-postponed command resource robot)
     (values)))

@@ -53,9 +53,15 @@ designator that denotes no local thing."
         collect (designated-local-thing designator resource)))
 
 (defun method-applies-p (method arguments)
-  (let ((things (method-things method arguments)))
+  (let ((things (method-things method arguments)) (parameters (method-parameters method)))
     (and (notany #'null things)
-         (patterns-fit-p (parameter-list-patterns (method-parameters method)) things))))
+         (equal (mapcar #'body-p things) (parameter-list-robots parameters))
+         (patterns-fit-p (parameter-list-patterns parameters) things))))
+
+(defun method-objects (method arguments)
+  "Return what the object parameters of METHOD are bound to: things, and robots for their bodies."
+  (loop for thing in (method-things method arguments)
+        collect (if (body-p thing) (body-robot thing) thing)))
 
 (defun applicable-method (manipulation arguments resource)
   "Return the first method of MANIPULATION that takes ARGUMENTS with RESOURCE and fits the
@@ -81,13 +87,14 @@ designated things now, or NIL."
 (defun run-method-body (operation method)
   "Run the body of METHOD; end OPERATION with the error code and the value that the body returns, or
 with :FAILED if the body fails."
-  (let* ((arguments (operation-arguments operation)) (things (method-things method arguments))
+  (let* ((arguments (operation-arguments operation)) (objects (method-objects method arguments))
          (results '(:failed)) (*world* (operation-world operation)))
     (in-any-case
       (call-user-code (lambda ()
                         (setf results (multiple-value-list
                                        (apply (method-body method)
-                                              (append things (nthcdr (length things) arguments))))))
+                                              (append objects
+                                                      (nthcdr (length objects) arguments))))))
                       (list "manipulation " (command-prefix (operation-command operation))))
       (progn (warn-of-returned-value operation (first results))
              (end-operation operation (first results) (second results))))))
@@ -132,13 +139,15 @@ no method, as after UNDEFINE."
     (and (notany #'null things) things)))
 
 (defun manipulation-failure-text (operation)
-  (format nil "~A failed~@[: ~A is not local, but objects of manipulations must be. Drive there, ~
-               for example with robot-goto-designator, and search again with the type :local~]~@[: ~
-               no method fits ~{~A~^, ~}, because the patterns of the methods require other ~
-               attributes~]"
-          (command-prefix (operation-command operation))
-          (find :local (designator-arguments operation) :key #'designator-type :test-not #'eq)
-          (and (null (operation-subject operation)) (designated-local-things operation))))
+  (let ((unfit (and (null (operation-subject operation)) (designated-local-things operation))))
+    (format nil "~A failed~@[: ~A is not local, but objects of manipulations must be. Drive there, ~
+                 for example with robot-goto-designator, and search again with the type :local~]~
+                 ~@[: no method fits ~{~A~^, ~}, because the patterns of the methods require other ~
+                 attributes~]~:[~; or things; a robot fits only a parameter such as x - robot~]"
+            (command-prefix (operation-command operation))
+            (find :local (designator-arguments operation) :key #'designator-type :test-not #'eq)
+            unfit
+            (some #'body-p unfit))))
 
 (define-record (manipulation-command (:include command) (:constructor %make-manipulation-command))
   "The command by which a manipulation is carried out.")

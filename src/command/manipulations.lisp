@@ -13,11 +13,13 @@
 ;;; version behind. A method typed at a REPL replaces one with the same variables, types and
 ;;; attributes, unless no thing could fit both.
 
-(define-record (parameter-list (:constructor make-parameter-list (objects patterns typed)))
-  "The parameters of a method: the variables and the patterns of its objects, and a list (variable
-type) for its resource and for each other parameter. The type may be NIL."
+(define-record (parameter-list (:constructor make-parameter-list (objects patterns robots typed)))
+  "The parameters of a method: the variables and the patterns of its objects, whether each object is
+a robot, and a list (variable type) for its resource and for each other parameter. The type may be
+NIL."
   (objects '() list)
   (patterns '() list)
+  (robots '() list)
   (typed '() list))
 
 (define-record (manipulation-method (:conc-name method-))
@@ -55,16 +57,28 @@ type) for its resource and for each other parameter. The type may be NIL."
   (and object (symbolp object) (not (constantp object)) (not (hyphen-p object))
        (not (member object lambda-list-keywords))))
 
+(defun robot-name-p (object)
+  (and (symbolp object) (string= object "ROBOT")))
+
+(defun parse-object (definition specification)
+  "Return the pattern of SPECIFICATION, what follows an object's hyphen, and whether the object is a
+robot: SPECIFICATION is a descriptor, ROBOT, or a list of ROBOT and a descriptor's clauses."
+  (cond ((robot-name-p specification) (values '() t))
+        ((and (consp specification) (robot-name-p (first specification)))
+         (values (parse-pattern definition (rest specification)) t))
+        (t (values (parse-pattern definition specification) nil))))
+
 (defun parse-objects (definition list)
-  "Return, as two values, the variables and the patterns in LIST, the parameters before :BY."
+  "Return three lists: the variables and the patterns in LIST, the parameters before :BY, and
+whether each is a robot."
   (loop for (variable hyphen specification) on list by #'cdddr
         for rest = list then (cdddr rest)
         unless (and (variable-p variable) (hyphen-p hyphen) (cddr rest))
           do (reject-clause definition list
                             "variable - descriptor for each object, and then :BY")
         collect variable into variables
-        collect (parse-pattern definition specification) into patterns
-        finally (return (values variables patterns))))
+        collect (multiple-value-list (parse-object definition specification)) into parsed
+        finally (return (values variables (mapcar #'first parsed) (mapcar #'second parsed)))))
 
 (defun parse-typed-variables (definition list)
   "Return a list of (variable type) for the variables in LIST. A hyphen and a type may follow each."
@@ -81,12 +95,13 @@ type) for its resource and for each other parameter. The type may be NIL."
 (defun parse-parameters (definition form)
   (unless (and (proper-list-p form) (rest (member :by form)))
     (reject-clause definition form "(variable - descriptor ... :BY resource other...)"))
-  (multiple-value-bind (objects patterns) (parse-objects definition (ldiff form (member :by form)))
+  (multiple-value-bind (objects patterns robots)
+      (parse-objects definition (ldiff form (member :by form)))
     (let* ((typed (parse-typed-variables definition (rest (member :by form))))
            (variables (append objects (mapcar #'first typed))))
       (unless (equal variables (remove-duplicates variables))
         (reject-clause definition form "a different variable for each parameter"))
-      (make-parameter-list objects patterns typed))))
+      (make-parameter-list objects patterns robots typed))))
 
 (defun parameter-variables (parameters)
   (append (parameter-list-objects parameters)
@@ -125,6 +140,7 @@ and a list of lists (variable type) for its other parameters. The type is NIL wh
     (and (null (method-source old)) (null (method-source method))
          (equal (parameter-variables parameters) (parameter-variables others))
          (equal (parameter-list-typed parameters) (parameter-list-typed others))
+         (equal (parameter-list-robots parameters) (parameter-list-robots others))
          (every #'similar-patterns-p
                 (parameter-list-patterns parameters) (parameter-list-patterns others)))))
 
@@ -193,8 +209,9 @@ list, BODY a function of these parameters. Return NAME."
   "Define a method of the manipulation NAME (manual 5.5.1). PARAMETERS is
   (variable - descriptor ... :by resource other ...)
 Each variable of an object is bound to a thing that fits the descriptor ((attribute value
-[threshold]) ...) exactly. A value may be a matchvar ?x, which has the same value wherever it
-occurs. A hyphen and a type may follow the resource and each other parameter. The resource is the
+[threshold]) ...) exactly. Instead of a descriptor, ROBOT or (robot (attribute value [threshold])
+...) binds the variable to another robot, with such attributes. A value may be a matchvar ?x, which
+has the same value wherever it occurs. A hyphen and a type may follow the resource and each other parameter. The resource is the
 robot or part that the command occupies. OPTIONS is ([:success probability] [:delay ticks]), by
 default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a value. Of several
 methods that fit, the newest is used. A method replaces an older method with the same parameter

@@ -89,6 +89,15 @@ or :manipulations. They are the world's dice if ROBOT is alone in its world; see
         (make-body robot (robot-name robot) (blueprint-attributes (robot-blueprint robot))
                    (robot-world robot) (robot-x robot) (robot-y robot))))
 
+;; Without a body, the attributes are those of the robot's definition.
+(defmethod attribute-holder (operator (robot robot))
+  (declare (ignore operator))
+  (let ((body (robot-body robot)))
+    (values body
+            (if body
+                (thing-attributes body)
+                (blueprint-attributes (robot-blueprint robot))))))
+
 (defun take-body (robot)
   "Remove the body of ROBOT, if it has one."
   (let ((body (shiftf (robot-body robot) nil)))

@@ -2,12 +2,14 @@
 
 (in-package :ars-magna.world)
 
-(export '(warn-of-unknown-attribute warn-of-misspellings checked-descriptor descriptor-p))
+(export '(attribute-holder warn-of-unknown-attribute warn-of-misspellings checked-descriptor
+          descriptor-p))
 
 (defun attribute-in-world-p (key world)
-  (do-things (thing world)
-    (when (assoc key (thing-attributes thing) :test #'eq)
-      (return-from attribute-in-world-p t))))
+  "True if a thing in WORLD, or the body of a robot, has the attribute KEY."
+  (loop for rank below (world-rank-count world)
+        for thing = (thing-of-rank rank world)
+        thereis (and thing (assoc key (thing-attributes thing) :test #'eq) t)))
 
 (defun undeclared-name-like (key world)
   "Return an undeclared attribute of a thing of WORLD that KEY probably misspells, or NIL."
@@ -36,18 +38,38 @@ resembles a declared attribute or, if READ is true, an attribute of some thing."
                                   it; did you mean ~(~S~)?"
                              operator (thing-name thing) key like)))))))
 
+(defgeneric attribute-holder (operator object)
+  (:documentation "Return the thing whose attributes OPERATOR reads or sets as those of OBJECT, a
+thing or robot, or NIL; and these attributes, an object descriptor. Signals WRONG-ARGUMENT.")
+  (:method (operator object)
+    (reject-argument operator "thing" object (argument-type-text 'thing object)))
+  (:method (operator (thing thing))
+    (declare (ignore operator))
+    (values thing (thing-attributes thing))))
+
+(defun thing-to-change (operator object)
+  "Return the thing whose attributes OPERATOR is to set as those of OBJECT, a thing or robot.
+Signals WRONG-ARGUMENT, and MISUSE if OBJECT is a robot without a body."
+  (or (attribute-holder operator object)
+      (reject-use "~(~A~): ~A has no body, whose attributes could change, because it is alone in ~
+                   its world or the run has :ghosts t." operator object)))
+
 (public get-attribute)
 (settable get-attribute)
 (defun get-attribute (thing attribute)
-  "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if the value is unspecified. SETF of
+  "Return the value of ATTRIBUTE, a keyword, of THING, or NIL if the value is unspecified. If THING
+is a robot, return the value for its body or, without a body, the value in its DEFROBOT. SETF of
 GET-ATTRIBUTE calls SET-ATTRIBUTE (manual 5.3). Do not modify a list that GET-ATTRIBUTE returns, as
 SORT would: the list belongs to THING. Warn once in a run if ATTRIBUTE is probably a misspelling of
 a declared attribute or of an attribute of some thing."
-  (check-argument get-attribute thing (thing-p thing) (argument-type-text 'thing thing))
-  (let* ((key (attribute-key attribute))
-         (entry (assoc key (thing-attributes thing) :test #'eq)))
-    (unless entry (warn-of-misspelling 'get-attribute thing key :read t))
-    (second entry)))
+  (multiple-value-bind (holder attributes)
+      (if (thing-p thing)
+          (values thing (thing-attributes thing))
+          (attribute-holder 'get-attribute thing))
+    (let* ((key (attribute-key attribute))
+           (entry (assoc key attributes :test #'eq)))
+      (unless (or entry (null holder)) (warn-of-misspelling 'get-attribute holder key :read t))
+      (second entry))))
 
 (defun merge-descriptors (new old)
   "Return the descriptor OLD with values overridden by NEW, followed by attributes only in NEW."
@@ -61,10 +83,11 @@ a declared attribute or of an attribute of some thing."
          (truth-of (key) (and (get-attribute thing key) t)))
     (setf (thing-obsmove-p thing) (truth-of :obsmove)
           (thing-obsview-p thing) (truth-of :obsview)
-          (thing-closed-p thing) (truth-of :closed)
           (thing-size thing) (number-of :size)
           (thing-weight thing) (number-of :weight)
-          (thing-capacity thing) (number-of :capacity)
+          ;; Nothing can be in the body of a robot.
+          (thing-closed-p thing) (and (truth-of :closed) (not (body-p thing)))
+          (thing-capacity thing) (if (body-p thing) 0d0 (number-of :capacity))
           (thing-substance-p thing) (truth-of :substance)
           (thing-substance-parameter thing)
           (substance-value-parameter (get-attribute thing :substance)))))
@@ -106,18 +129,19 @@ a declared attribute or of an attribute of some thing."
 
 (public set-attribute)
 (defun set-attribute (thing attribute new-value)
-  "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return NEW-VALUE (manual 5.3). NIL means
-false or unspecified. Lists, strings and vectors are copied. Signals WRONG-ARGUMENT for a value that
-the attribute cannot have. Warns as GET-ATTRIBUTE does."
-  (check-argument set-attribute thing (thing-p thing) (argument-type-text 'thing thing))
-  (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
-  (let ((descriptor (if (typep new-value '(or symbol number))
-                        (list (checked-entry 'set-attribute attribute new-value))
-                        (checked-descriptor 'set-attribute (list (list attribute new-value))))))
-    (warn-of-misspelling 'set-attribute thing (first (first descriptor)))
-    (changing ((world-of-living-thing thing) set-attribute
-               thing attribute (second (first descriptor)))
-      (change-attributes thing descriptor)))
+  "Set ATTRIBUTE, a keyword, of THING to NEW-VALUE and return NEW-VALUE (manual 5.3). A robot means
+its body. NIL means false or unspecified. Lists, strings and vectors are copied.
+Signals WRONG-ARGUMENT for a value that the attribute cannot have, MISUSE for a robot without a
+body. Warns as GET-ATTRIBUTE does."
+  (let ((thing (thing-to-change 'set-attribute thing)))
+    (check-argument set-attribute attribute (and attribute (symbolp attribute)) "a keyword")
+    (let ((descriptor (if (typep new-value '(or symbol number))
+                          (list (checked-entry 'set-attribute attribute new-value))
+                          (checked-descriptor 'set-attribute (list (list attribute new-value))))))
+      (warn-of-misspelling 'set-attribute thing (first (first descriptor)))
+      (changing ((world-of-living-thing thing) set-attribute
+                 thing attribute (second (first descriptor)))
+        (change-attributes thing descriptor))))
   new-value)
 
 (defun set-attribute-in-replay (thing attribute new-value)
@@ -131,12 +155,13 @@ the attribute cannot have. Warns as GET-ATTRIBUTE does."
 (public change-attribute)
 (defun change-attribute (thing descriptor)
   "Set all attributes of THING that are in the object descriptor DESCRIPTOR; other attributes do not
-change (manual 5.3). Signals WRONG-ARGUMENT. Return THING. See reading 173."
-  (check-argument change-attribute thing (thing-p thing) (argument-type-text 'thing thing))
-  (let ((descriptor (checked-descriptor 'change-attribute descriptor)))
-    (loop for (key) in descriptor do (warn-of-misspelling 'change-attribute thing key))
-    (changing ((world-of-living-thing thing) change-attribute thing descriptor)
-      (change-attributes thing descriptor)))
+change (manual 5.3). A robot means its body. Signals WRONG-ARGUMENT, and MISUSE for a robot without
+a body. Return THING. See reading 173."
+  (let ((holder (thing-to-change 'change-attribute thing))
+        (descriptor (checked-descriptor 'change-attribute descriptor)))
+    (loop for (key) in descriptor do (warn-of-misspelling 'change-attribute holder key))
+    (changing ((world-of-living-thing holder) change-attribute holder descriptor)
+      (change-attributes holder descriptor)))
   thing)
 
 (define-operator 'change-attribute '(thing datum)
