@@ -4,7 +4,7 @@
 
 (in-suite handling)
 
-(robot:defrobot courier (green (14.5 5.5) pi) :cameras ((6.2 9)) :hands (10))
+(robot:defrobot courier (village-green (14.5 5.5) pi) :cameras ((6.2 9)) :hands (10))
 
 (defun hand-of (robot &optional (index 0)) (robot:robot-hand robot index))
 (defun bin-of (robot &optional (index 0)) (robot:robot-storage-bin robot index))
@@ -90,8 +90,8 @@
 
 (test hand-give.waits-for-no-busy-or-distant-hand
   (with-giver ()
-    (robot:place-robot ranger 3.5 5.5 0)
-    (robot:place-robot scout 3.5 5.5 0)
+    (robot:set-robot-pose ranger 3.5 5.5 0)
+    (robot:set-robot-pose scout 3.5 5.5 0)
     (let ((to (designated scout '((:color red)))) (crate (designated scout '((:color green))))
           (theirs (designated ranger '((:color green)))))
       (answer-of 'command:hand-insert (hand-of ranger) theirs)

@@ -4,18 +4,18 @@
 
 (in-suite looking)
 
-(world:defmap green (30 12)
+(world:defmap village-green (30 12)
   (rect (0 0) (29 11) bricks 20)
   (obj flag (20.5 5.5) ((:size 2) (:color blue)))
   (obj crate (3.5 5.5) ((:size 5) (:capacity 10) (:color green))))
 
-(robot:defrobot scout (green (3.5 5.5) 0)
+(robot:defrobot scout (village-green (3.5 5.5) 0)
   :cameras ((2 40) (3 5)) :hands (10) :bins (20) :attributes ((:team blue)))
-(robot:defrobot ranger (green (12.5 5.5) 0)
+(robot:defrobot ranger (village-green (12.5 5.5) 0)
   :cameras ((6.2 9)) :hands (10 1/2) :bins (20 1/2)
   :attributes ((:color red) (:size 4) (:team red) (:capacity 50) (:closed t) (:substance 80)))
-(robot:defrobot plain (green (12.5 8.5) 0))
-(robot:defrobot screen (green (12.5 5.5) 0)
+(robot:defrobot plain-robot (village-green (12.5 8.5) 0))
+(robot:defrobot tall-screen (village-green (12.5 2.5) 0)
   :cameras ((6.2 9)) :attributes ((:obsview t) (:substance 50)))
 
 (defun answer-of (command &rest arguments)
@@ -40,13 +40,13 @@ error code and the results, without the resource."
         collect (world:thing-name (robot:designator-denotation designator))))
 
 (test robots-seen.fit-specifications-as-things-do
-  (run:with-simulation ((scout ranger plain) :clean t)
+  (run:with-simulation ((scout ranger plain-robot) :clean t)
     (is (equal '(ranger) (names-seen-by scout :non-local '((:color red)))))
     (is (equal '(ranger) (names-seen-by scout :non-local '((:team red) (:size (3 5))))))
     (is (equal '() (names-seen-by scout :non-local '((:team blue)))) "it never finds itself")
-    (is (equal '(plain ranger)
+    (is (equal '(plain-robot ranger)
                (sort (names-seen-by scout :non-local '((:obsmove t))) #'string<)))
-    (is (equal '(flag plain ranger)
+    (is (equal '(flag plain-robot ranger)
                (sort (names-seen-by scout :non-local '()) #'string<)))
     (is (equal '(scout) (names-seen-by ranger :non-local '((:team blue)))))
     (is (equal '(crate) (names-seen-by scout :local '())))
@@ -105,7 +105,7 @@ error code and the results, without the resource."
   (flet ((lost-after (x y)
            (let ((code :tracking))
              (run:with-simulation ((scout ranger) :clean t)
-               (world:make-new-thing 'wall '(green 12.5 8.5) '((:obsview t)))
+               (world:make-new-thing 'wall '(village-green 12.5 8.5) '((:obsview t)))
                (let ((designator (first (seen-by scout :non-local '((:color red))))))
                  (command:camera-track (camera-of scout) designator
                                        (lambda (err &rest more)
@@ -141,14 +141,15 @@ error code and the results, without the resource."
       (is (/= (robot:robot-cell-index scout) (robot:robot-cell-index ranger))))))
 
 (test robots-seen.hide-things-only-from-others
-  (run:with-simulation ((scout screen) :clean t)
-    (is (equal '(screen) (names-seen-by scout :non-local '())) "it hides the flag")
+  (run:with-simulation ((scout tall-screen) :clean t)
+    (robot:place-robot tall-screen 12.5 5.5 0)
+    (is (equal '(tall-screen) (names-seen-by scout :non-local '())) "it hides the flag")
     (is (equal '(crate flag scout)
-               (sort (names-seen-by screen :non-local '()) #'string<)))
-    (robot:place-robot screen 12.5 8.5 0)
+               (sort (names-seen-by tall-screen :non-local '()) #'string<)))
+    (robot:place-robot tall-screen 12.5 8.5 0)
     (let ((flag (first (seen-by scout :non-local '((:color blue))))))
       (answer-of 'command:camera-track (camera-of scout) flag)
-      (robot:place-robot screen 12.5 5.5 0)
+      (robot:place-robot tall-screen 12.5 5.5 0)
       (run:run-ticks 2)
       (is-false (robot:designator-valid-p flag) "it is hidden now"))))
 
@@ -159,9 +160,10 @@ error code and the results, without the resource."
     (run:with-simulation ((scout ranger) :clean t)
       (is (find 50 (view scout) :test #'=) "the mean of 80 and the wall's 20")
       (is (find 20 (view scout) :test #'=)))
-    (run:with-simulation ((scout screen) :clean t)
+    (run:with-simulation ((scout tall-screen) :clean t)
+      (robot:place-robot tall-screen 12.5 5.5 0)
       (is (find 50 (view scout) :test #'=))
-      (is (every (lambda (pixel) (= 20 pixel)) (view screen))))))
+      (is (every (lambda (pixel) (= 20 pixel)) (view tall-screen))))))
 
 (test robots-seen.carry-things-that-nobody-else-sees
   (run:with-simulation ((scout ranger) :clean t)
@@ -176,7 +178,7 @@ error code and the results, without the resource."
 
 (test robots-seen.are-not-inside-of-containers
   (run:with-simulation ((scout ranger) :clean t)
-    (robot:place-robot ranger 3.5 5.5 0)
+    (robot:set-robot-pose ranger 3.5 5.5 0)
     (let ((crate (first (seen-by scout :local '((:color green))))))
       (is (equal '(ranger) (names-seen-by scout :local '((:color red)))) "in the same cell")
       (answer-of 'command:camera-track (camera-of scout) crate)
@@ -188,13 +190,13 @@ error code and the results, without the resource."
   (macrolet ((things (&rest robots)
                `(run:with-simulation (,robots)
                   (let ((dice (base:make-dice 5)) (world (robot:robot-world scout)))
-                    (world:make-new-thing 'late '(green 5 5) '())
+                    (world:make-new-thing 'late '(village-green 5 5) '())
                     (loop repeat 60
                           collect (world:thing-name (robot::random-thing world dice)))))))
     (let ((things (things scout)))
       (is (equal '(crate flag late) (sort (remove-duplicates things) #'string<)))
       (is (equal things (things scout ranger)))
-      (is (equal things (things scout ranger plain))))))
+      (is (equal things (things scout ranger plain-robot))))))
 
 ;;; Parts and designators of another robot.
 
