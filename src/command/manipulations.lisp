@@ -211,12 +211,12 @@ list, BODY a function of these parameters. Return NAME."
 Each variable of an object is bound to a thing that fits the descriptor ((attribute value
 [threshold]) ...) exactly. Instead of a descriptor, ROBOT or (robot (attribute value [threshold])
 ...) binds the variable to another robot, with such attributes. A value may be a matchvar ?x, which
-has the same value wherever it occurs. A hyphen and a type may follow the resource and each other parameter. The resource is the
-robot or part that the command occupies. OPTIONS is ([:success probability] [:delay ticks]), by
-default 1 and 0. BODY runs in a tick; it returns an error code or NIL, and a value. Of several
-methods that fit, the newest is used. A method replaces an older method with the same parameter
-list. Loading a changed file again removes the methods that it no longer contains. Signals
-MALFORMED-DEFINITION. Return NAME."
+has the same value wherever it occurs. A hyphen and a type may follow the resource and each other
+parameter. The resource is the robot or part that the command occupies. OPTIONS is ([:success
+probability] [:delay ticks]), by default 1 and 0. BODY runs in a tick; it returns an error code or
+NIL, and a value. Of several methods that fit, the newest is used. A method replaces an older method
+with the same parameter list. Loading a changed file again removes the methods that it no longer
+contains. Signals MALFORMED-DEFINITION. Return NAME."
   (let ((definition (definition-title "defmanipulation" name)))
     (expand-definition form environment
                        (lambda ()
