@@ -62,6 +62,8 @@
       (:designator-type (make-pick '(:local :non-local)))
       (:specification (make-pick '(() ((:size (0 100))) ((:color (red blue))) ((:closed nil)))))
       (:place-type (make-pick '(doorway convex concave)))
+      (:receiving-part (make-pick '(:hand :bin)))
+      (:part-number (make-pick '(0 1)))
       ((:number :speed :distance) (make-pick '(0 1 .3 .8 2 5)))
       (:angle (make-pick '(0 1 -2 .1 3.2d0 1/2)))
       ((:ticks :tick-span) (make-pick '(0 1 2 5 20))))))

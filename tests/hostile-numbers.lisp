@@ -91,6 +91,8 @@ what went wrong after it."
     (:storage-bin (robot:robot-storage-bin counter 0))
     ((:number :angle :speed :distance :ticks :tick-span) 1)
     (:designator-type :non-local)
+    (:receiving-part :hand)
+    (:part-number 0)
     (:specification '((:color world:red)))
     (:place-type 'world::corner)
     ((:designator :destination) (robot:robot-storage-bin counter 0))))

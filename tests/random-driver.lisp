@@ -156,6 +156,8 @@ another command, and sometimes fails."
     (:designator-type (if (luck .7) :local :non-local))
     (:specification (any-specification))
     (:place-type (pick '(doorway convex concave beak "concave" nonsense)))
+    (:receiving-part (pick '(:hand :bin)))
+    (:part-number (pick '(0 1 7)))
     ((:number :speed :distance) (pick '(0 1 .3 .8 -1 5)))
     (:angle (pick '(0 1 -2 .1 3.2d0 1/2)))
     ((:ticks :tick-span) (pick '(0 1 2 5 20)))))
@@ -177,9 +179,10 @@ another command, and sometimes fails."
 ;;; What the driver does.
 
 (defun issue-command (name &rest arguments)
-  "Issue the command NAME with ARGUMENTS, which may be wrong, and a continuation of the rider's."
+  "Issue the command NAME with ARGUMENTS, which may be wrong or belong to two robots, and a
+continuation of the rider's."
   (multiple-value-bind (continuation call) (rider name)
-    (if (tolerating (base:wrong-argument)
+    (if (tolerating (base:wrong-argument base:misuse)
           (apply name (append arguments (list continuation))))
         (incf (ride-issued *ride*))
         (remhash call (ride-pending *ride*)))))

@@ -61,9 +61,6 @@ typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE
 (defmethod argument-description ((type (eql 'designator-type)))
   "local or non-local")
 
-(defmethod argument-description ((type (eql 'receiving-part)))
-  "hand or bin")
-
 ;;; The prompt's own types.
 
 (define-argument-type 'count #'whole-p "a whole number, from 0 to 1e9")
