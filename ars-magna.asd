@@ -186,7 +186,7 @@
     :components ((:file "package") (:file "prototypes") (:file "kickers")
                  (:file "manipulations") (:file "watson") (:file "office") (:file "hall")
                  (:file "tiny") (:file "doorways") (:file "plans-reckoning")
-                 (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
+                 (:file "traffic") (:file "plans-moving") (:file "plans-looking") (:file "plans-handling")
                  (:file "plans-errands") (:file "plans-locks") (:file "trials")
                  (:file "plans-searching")
                  (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))))

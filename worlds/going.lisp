@@ -107,10 +107,12 @@ OTHERWISE. If the command was interrupted or another program took over the robot
 (defun continue-journey (journey)
   "Take JOURNEY's next step, or end JOURNEY: at the goal, without a way, or after too many steps."
   (let* ((me (journey-me journey)) (goal (journey-goal journey))
-         (step (next-step-of me goal)))
+         (ticks (ticks-at-passing-place me))
+         (step (next-step-of me (present-goal me goal))))
     (cond ((<= (distance-left me goal) (journey-tolerance journey)) (end-journey journey nil))
           ((null step) (end-journey journey :no-way))
           ((zerop (decf (journey-steps journey))) (end-journey journey :gave-up))
+          (ticks (wait-on-journey journey ticks))
           ((eq :door (first step))
            (face-point journey (middle-of (second step))
                        (lambda () (drive-through-doorway journey (second step) (third step)))))
@@ -152,18 +154,62 @@ CONTINUATION gets an error code or NIL, and the robot."
 
 (defun continue-after-obstacle (journey)
   "Continue JOURNEY after something has stopped the robot: correct the reckoning by a wall, or bar
-the cells of a thing. Every third time, turn away and drive two metres first."
+the cells of a thing. In a world with several robots, first find out which of the two it is."
   (let ((me (journey-me journey)))
     (reckon me)
-    (unless (correct-by-wall me) (bar-cell-ahead me))
-    (cond ((zerop (decf (journey-patience journey))) (end-journey journey :gave-up))
-          ((zerop (mod (journey-patience journey) 3))
-           (robot-turn (robot-to-command journey) (if (evenp (journey-patience journey)) 2.4 -2.4)
-             (continuation (err robot angle)
-               (continue-after-command journey err
-                                       (lambda () (drive-straight journey 2 #'continue-journey))
-                                       (lambda () (continue-journey journey))))))
-          (t (continue-journey journey)))))
+    (cond ((meets-robots-p me) (feel-obstacle journey))
+          (t (unless (correct-by-wall me) (bar-cell-ahead me))
+             (try-again journey)))))
+
+(defun feel-obstacle (journey)
+  "Find out what stopped the robot of JOURNEY, as FEEL-AHEAD does, and continue JOURNEY."
+  (drive-metres journey .1 .1
+    (continuation (err robot)
+      (continue-after-command journey err
+                              (lambda () (continue-journey journey))
+                              (lambda () (feel-wall journey))))))
+
+(defun feel-wall (journey)
+  "Something is directly ahead of the robot of JOURNEY. If it is a wall, correct the reckoning; if it
+is a robot or a thing, bar its cell and give way."
+  (let ((me (journey-me journey)))
+    (robot-goto-wall (robot-to-command journey)
+      (continuation (err robot)
+        (continue-after-command journey err
+                                (lambda ()
+                                  (reckon me)
+                                  (correct-by-wall me)
+                                  (try-again journey))
+                                (lambda ()
+                                  (reckon me)
+                                  (bar-cell-ahead me)
+                                  (give-way-on-journey journey)))))))
+
+(defun give-way-on-journey (journey)
+  (if (zerop (decf (journey-patience journey)))
+      (end-journey journey :gave-up)
+      (wait-on-journey journey (give-way (journey-me journey)))))
+
+(defun wait-on-journey (journey ticks)
+  "Continue JOURNEY after some TICKS. Commands to turn by 0 pass the time: if another program or STOP
+commands the robot, they are interrupted, and JOURNEY ends."
+  (if (plusp ticks)
+      (robot-turn (robot-to-command journey) 0
+        (continuation (err robot angle)
+          (flet ((on () (wait-on-journey journey (- ticks (max 1 robot-turn-delay*)))))
+            (continue-after-command journey err #'on #'on))))
+      (continue-journey journey)))
+
+(defun try-again (journey)
+  "Continue JOURNEY after an obstacle. Every third time, turn away and drive two metres first."
+  (cond ((zerop (decf (journey-patience journey))) (end-journey journey :gave-up))
+        ((zerop (mod (journey-patience journey) 3))
+         (robot-turn (robot-to-command journey) (if (evenp (journey-patience journey)) 2.4 -2.4)
+           (continuation (err robot angle)
+             (continue-after-command journey err
+                                     (lambda () (drive-straight journey 2 #'continue-journey))
+                                     (lambda () (continue-journey journey))))))
+        (t (continue-journey journey))))
 
 ;;; Doorways: a camera guides the robot there, as in PASS-DOORWAY.
 

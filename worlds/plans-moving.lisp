@@ -163,16 +163,22 @@ error code, or NIL when the robot is there."
       (pass-doorway me camera (second step) (third step))
       (drive-towards me (second step))))
 
+(def-interp-proc turn-away (trouble)
+  "Turn the robot and drive off, in another direction for each number TROUBLE."
+  (turn-by (angle-difference (+ pi (* 2.4 trouble)) 0))
+  (drive-by (+ 1 (mod trouble 3))))
+
 (def-interp-proc get-free (me stopped)
   "Get the robot of the reckoning ME away from an obstacle. STOPPED is its kind, :WALL or :THING.
-Wait for a thing to move away; every third time turn and drive off."
+Wait for a thing to move away; every third time turn and drive off. In a world with several robots,
+do what GIVE-WAY decides about a thing."
   (let ((trouble (incf (reckoning-trouble me))))
-    (if (eq stopped :thing)
-        (wait-time (* 3 (mod trouble 3))))
-    (if (zerop (mod trouble 3))
-        ;; In another direction each time.
-        (seq (turn-by (angle-difference (+ pi (* 2.4 trouble)) 0))
-             (drive-by (+ 1 (mod trouble 3)))))
+    (cond ((and (eq stopped :thing) (meets-robots-p me))
+           (wait-time (give-way me)))
+          (t (if (eq stopped :thing)
+                 (wait-time (* 3 (mod trouble 3))))
+             (if (zerop (mod trouble 3))
+                 (turn-away trouble))))
     (reckon me)))
 
 (defun number-list-p (value count)
@@ -210,13 +216,16 @@ PATIENCE obstacles or 300 steps, or at once if there is no way; or with WRONG-AR
   "Do TRAVEL-TO, but still show the way in pictures afterwards."
   (let ((limit (+ patience (reckoning-trouble me)))
         (steps 0))
+    (forget-passing-place me)
     (loop UNTIL (<= (distance-left me point) tolerance)
-      (let ((step (next-step-of me point)))
+      (let ((step (next-step-of me (present-goal me point))))
         (incf steps)
         (if (or (null step) (> (reckoning-trouble me) limit) (> steps 300))
             (fail :class :cannot-get-there :point point :believed (reckon me)))
         (let ((stopped (take-step-of-way me camera step)))
-          (if stopped (get-free me stopped)))))
+          (if stopped (get-free me stopped)))
+        (let ((ticks (ticks-at-passing-place me)))
+          (if ticks (wait-time ticks)))))
     (reckon me)))
 
 (def-interp-proc patrol-places (points &key (rounds 1) start)

@@ -16,7 +16,11 @@
   (driven 0d0 :type real)
   ;; A list of (cell cost until): the extra cost of the cell until that tick.
   (barred '() :type list)
-  (trouble 0 :type fixnum))
+  (trouble 0 :type fixnum)
+  ;; For meetings with other robots: see traffic.lisp.
+  (passing-place nil :type list)
+  (meetings 0 :type fixnum)
+  (met-at 0d0 :type real))
 
 (defun here (robot)
   "Return the true position and heading of ROBOT: a list (x y heading), the START of many plans."
