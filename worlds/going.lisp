@@ -74,9 +74,10 @@ the robot has received more commands, another program has taken it over."
 (defun robot-go-to (robot x y continuation &key start (tolerance 1) (patience 40))
   "Make ROBOT go to the point (X,Y) of its map, or the nearest free point, to within TOLERANCE
 metres. ROBOT drives through doorways and round obstacles, by its odometer, its place sense and a
-camera. START is its position, a list (x y heading); the default is the true position. Returns at
-once. The robot's current command is interrupted, even if the robot is at the goal already. At the
-end CONTINUATION, unless it is NIL, is called once with an error code or NIL, and ROBOT. The codes:
+camera. It waits for other robots in the way, plans another way or gives way to them. START is its
+position, a list (x y heading); the default is the true position. Returns at once. The robot's
+current command is interrupted, even if the robot is at the goal already. At the end CONTINUATION,
+unless it is NIL, is called once with an error code or NIL, and ROBOT. The codes:
 - :NO-WAY if no way leads there.
 - :GAVE-UP after PATIENCE obstacles, or 300 steps.
 - :INTERRUPT if another command took over the robot or the camera, or the run ended or was rewound.
@@ -170,8 +171,8 @@ the cells of a thing. In a world with several robots, first find out which of th
                               (lambda () (feel-wall journey))))))
 
 (defun feel-wall (journey)
-  "Something is directly ahead of the robot of JOURNEY. If it is a wall, correct the reckoning; if it
-is a robot or a thing, bar its cell and give way."
+  "Something stands directly ahead of the robot of JOURNEY. If it is a wall, correct the reckoning.
+If it is a robot or a thing, bar its cell and give way."
   (let ((me (journey-me journey)))
     (robot-goto-wall (robot-to-command journey)
       (continuation (err robot)
@@ -191,8 +192,8 @@ is a robot or a thing, bar its cell and give way."
       (wait-on-journey journey (give-way (journey-me journey)))))
 
 (defun wait-on-journey (journey ticks)
-  "Continue JOURNEY after some TICKS. Commands to turn by 0 pass the time: if another program or STOP
-commands the robot, they are interrupted, and JOURNEY ends."
+  "Continue JOURNEY after some TICKS. The robot turns by 0 meanwhile: so another program, or STOP,
+can interrupt it."
   (if (plusp ticks)
       (robot-turn (robot-to-command journey) 0
         (continuation (err robot angle)

@@ -204,7 +204,8 @@ do what GIVE-WAY decides about a thing."
 (def-interp-proc travel-to (me point &key (tolerance 1) (patience 40) (camera (widest-camera)))
   "Drive the robot of the reckoning ME to POINT, a list (x y), to within TOLERANCE metres, through
 doorways and round obstacles. Return the estimated position. Fails with :CANNOT-GET-THERE after
-PATIENCE obstacles or 300 steps, or at once if there is no way; or with WRONG-ARGUMENT."
+PATIENCE obstacles or 300 steps, or at once if there is no way; or with WRONG-ARGUMENT. If other
+robots are in the way, the robot waits, plans another way or gives way to them."
   (check-arguments 'travel-to
                    (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
                    (list (number-list-p point 2) "point" point "a list (x y) of numbers of metres"))

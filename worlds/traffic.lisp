@@ -15,7 +15,7 @@
 ;;; Passing places.
 
 (defun narrow-cell-p (map x y)
-  "True if the cell (X,Y) of MAP has walls on two opposite sides, so that nobody can get past there."
+  "True if the cell (X,Y) of MAP has walls on two opposite sides: two robots cannot pass there."
   (flet ((walls-p (dx dy)
            (and (wall-at-p map (+ x dx) (+ y dy)) (wall-at-p map (- x dx) (- y dy)))))
     (or (walls-p 1 0) (walls-p 0 1))))
@@ -80,13 +80,13 @@ the reckoning ME has met since it last drove ten metres."
   (+ 2 (random (min 60 (* 6 (reckoning-meetings me))))))
 
 (defun give-way (me)
-  "The robot of the reckoning ME is blocked by a robot or a thing that the reckoning has noted. Half
-the time, make it give way. Return how many ticks to wait before the next step."
+  "The robot of the reckoning ME is blocked by a robot or a thing that the reckoning has noted.
+Three times in four, make it give way. Return how many ticks to wait before the next step."
   (when (> (- (reckoning-driven me) (reckoning-met-at me)) 10)
     (setf (reckoning-meetings me) 0))
   (incf (reckoning-meetings me))
   (setf (reckoning-met-at me) (reckoning-driven me)
-        (reckoning-passing-place me) (and (zerop (random 2)) (choose-passing-place me)))
+        (reckoning-passing-place me) (and (plusp (random 4)) (choose-passing-place me)))
   (if (reckoning-passing-place me) 0 (ticks-to-wait me)))
 
 (defun ticks-at-passing-place (me)
