@@ -111,12 +111,10 @@ code x) in the order of their full names. Claims that each is answered once."
                  (is (every (lambda (code) (eq :robot-blocked code)) codes)
                      "~S, seed ~D: ~S" names seed codes))))))
 
-(test circles.of-three-and-a-gap-run
-  "Without one of the four, the others drive until they meet a robot or their time is over."
+(test circles.with-a-gap-run
+  "Without one of the four, each of the others drives into the cell of the one ahead."
   (dolist (names (orders-of (rest *circle*)))
-    (is (equal '(nil nil :robot-blocked)
-               (sort (mapcar #'second (drive-all names 1 :seed 3)) #'string< :key #'string))
-        "~S" names)))
+    (is (every #'null (mapcar #'second (drive-all names 1 :seed 3))) "~S" names)))
 
 ;;; Travels. The benchmark program of the same name makes a thousand of each.
 
@@ -220,3 +218,58 @@ tick in which the last robot arrived."
     (let ((pairs (mapcar #'cons *convoy* *convoy-goals*)))
       (loop for seed from 1 to 3
             do (is (equal (ends pairs seed) (ends (reverse pairs) seed)) "seed ~D" seed)))))
+
+(defparameter *barred*
+  (define-robots "TRAFFIC-BARRED" 'traffic-rooms '((11.5 10.5 0) (15.5 10.5 0))
+    :cameras '((1 10))))
+
+(test travels.fail-if-a-robot-stands-in-the-only-doorway
+  (let ((codes '()))
+    (run:with-simulation (*barred* :seed 3)
+      (ars-worlds:robot-go-to (first (robots-named *barred*)) 20.5 10.5
+                              (lambda (err robot) (declare (ignore robot)) (push err codes))
+                              :patience 6)
+      (run:run-ticks 2000))
+    (is (equal '(:gave-up) codes)))
+  (run:with-simulation (*barred* :seed 3)
+    (driver:rpl-init-robot (first (robots-named *barred*)))
+    (is (eq :failed (nth-value 1 (driver:run-plan 'traffic-travel '(20.5 10.5)))))
+    (is-true (find-if (lambda (message) (search "CANNOT-GET-THERE" (base:message-text message)))
+                      (base:take-messages)))))
+
+(test travels.end-when-a-robot-that-waits-is-told-to-stop
+  (loop for tick from 10 to 120 by 5
+        do (is (equal '((:interrupt) nil)
+                      (run:with-simulation (*barred* :seed 2)
+                        (let ((robot (first (robots-named *barred*))))
+                          (told-to-stop robot
+                                        (lambda (continuation)
+                                          (ars-worlds:robot-go-to robot 20.5 10.5 continuation))
+                                        tick))))
+               "tick ~D" tick)))
+
+(test travels.are-the-same-in-forks-and-replays
+  (run:with-simulation (*head-on* :seed 4 :journal t)
+    (send-robots (robots-named *head-on*) *head-on-goals* #'identity)
+    (run:run-ticks 60)
+    (let ((ends '()))
+      (run:with-fork (:continuations t)
+        (run:run-ticks 150)
+        (push (run:state-digest) ends))
+      (run:run-ticks 150)
+      (is (equal ends (list (run:state-digest))) "the fork")
+      (is (= (first ends) (nth-value 1 (run:replay (end-journal time:*simulation*))))
+          "the replay"))))
+
+;;; Passing places.
+
+(test passing-places.are-off-doorways-and-corridors
+  (let ((map (world:find-map 'traffic-corridor)))
+    (loop for (x y narrow passing) in '((12 6 t nil) (18 6 t nil) (10 6 nil nil) (9 6 nil t)
+                                        (1 1 nil t) (20 6 nil t) (19 5 nil nil))
+          do (is (eq narrow (ars-worlds::narrow-cell-p map x y)) "(~D,~D)" x y)
+             (is (eq passing (ars-worlds::passing-place-p map (list x y))) "(~D,~D)" x y))
+    (is (null (ars-worlds::nearest-passing-places map '(14 6) '(13 6) 0)))
+    (let ((places (ars-worlds::nearest-passing-places map '(14 6) '(13 6) 5)))
+      (is (<= 5 (length places)))
+      (is (every (lambda (cell) (<= 19 (first cell))) places) "~S" places))))

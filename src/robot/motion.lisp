@@ -4,7 +4,7 @@
 
 (export '(set-robot-pose set-robot-angle drive-tick turn-tick robot-speed-now speed-zero-p
           longest-step tick-distance robot-turn-angle-now record-movement-start robot-last-move
-          robot-last-move-estimate robot-cell-index robot-in-way))
+          robot-last-move-estimate robot-cell-index drives-robot-p robot-in-way))
 
 ;;; Motion is swept: the robot passes through each cell between its position and its target, and
 ;;; stops just short of the first that blocks. Its own cell never blocks, so a thing that moves
