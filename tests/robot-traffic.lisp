@@ -155,15 +155,17 @@ code x) in the order of their full names. Claims that each is answered once."
            :far-away)))
 
 (defun send-robots (robots goals note)
-  "Send each of ROBOTS to its goal. At the end of each travel, call NOTE with its trouble or NIL."
+  "Send each of ROBOTS to its goal, patiently. At the end of each travel, call NOTE with its trouble
+or NIL."
   (loop for robot in robots
         for goal in goals
         do (let ((goal goal))
              (ars-worlds:robot-go-to robot (first goal) (second goal)
                                      (lambda (err robot)
-                                       (funcall note (trouble-at-goal err robot goal)))))))
+                                       (funcall note (trouble-at-goal err robot goal)))
+                                     :patience (if (rest (rest robots)) 100 40)))))
 
-(defun travel-troubles (names goals seed &key clean (limit 6000))
+(defun travel-troubles (names goals seed &key clean (limit 9000))
   "Let the robots with NAMES travel to GOALS with ROBOT-GO-TO. Return a list of troubles, and the
 tick in which the last robot arrived."
   (let ((ends '()))
@@ -177,7 +179,7 @@ tick in which the last robot arrived."
 (rpl:def-interp-proc traffic-travel (point)
   (ars-worlds:travel-to (ars-worlds:begin-reckoning (ars-worlds:here (driver:rpl-robot))) point))
 
-(defun plan-travel-troubles (names goals seed &key clean (limit 6000))
+(defun plan-travel-troubles (names goals seed &key clean (limit 9000))
   "Do as TRAVEL-TROUBLES, but the first robot travels with the plan TRAVEL-TO."
   (let ((ends '()))
     (run:with-simulation (names :seed seed :clean clean)

@@ -20,7 +20,8 @@
   ;; For meetings with other robots: see traffic.lisp.
   (passing-place nil :type list)
   (meetings 0 :type fixnum)
-  (met-at 0d0 :type real))
+  (met-at 0d0 :type real)
+  (dice nil))
 
 (defun here (robot)
   "Return the true position and heading of ROBOT: a list (x y heading), the START of many plans."

@@ -12,6 +12,17 @@
   "True if the robot of the reckoning ME may meet other robots: there are others in its world."
   (and (ars-magna.robot:robot-body (robot-of-reckoning me)) t))
 
+;; With dice of its own for each robot, no robot changes the choices of another.
+(defun traffic-dice (me)
+  "Return the dice for the choices of the robot of the reckoning ME in meetings. They depend on the
+seed, the robot's full name, and the tick of its first meeting."
+  (or (reckoning-dice me)
+      (let ((robot (robot-of-reckoning me)))
+        (setf (reckoning-dice me)
+              (ars-magna.base:make-dice (world-seed (robot-world robot))
+                                        (format nil "traffic of ~A at ~D" (robot-full-name robot)
+                                                (simulation-tick)))))))
+
 ;;; Passing places.
 
 (defun narrow-cell-p (map x y)
@@ -62,7 +73,7 @@ NIL. The way there does not lead through the cell ahead."
                                               (cell-of-point (point-as-list start))
                                               (cell-of-point (point-ahead me .6))
                                               12))))
-    (and places (middle-of (nth (random (length places)) places)))))
+    (and places (middle-of (roll-element places (traffic-dice me))))))
 
 ;;; Giving way. While a robot gives way, its reckoning has a passing place, and its next step leads
 ;;; there instead of to its goal.
@@ -77,7 +88,7 @@ NIL. The way there does not lead through the cell ahead."
 (defun ticks-to-wait (me)
   "Return a random number of ticks to wait. It grows with the number of obstacles that the robot of
 the reckoning ME has met since it last drove ten metres."
-  (+ 2 (random (min 60 (* 6 (reckoning-meetings me))))))
+  (+ 2 (roll-index (min 60 (* 6 (reckoning-meetings me))) (traffic-dice me))))
 
 (defun give-way (me)
   "The robot of the reckoning ME is blocked by a robot or a thing that the reckoning has noted.
@@ -86,7 +97,7 @@ Three times in four, make it give way. Return how many ticks to wait before the 
     (setf (reckoning-meetings me) 0))
   (incf (reckoning-meetings me))
   (setf (reckoning-met-at me) (reckoning-driven me)
-        (reckoning-passing-place me) (and (plusp (random 4)) (choose-passing-place me)))
+        (reckoning-passing-place me) (and (chance 3/4 (traffic-dice me)) (choose-passing-place me)))
   (if (reckoning-passing-place me) 0 (ticks-to-wait me)))
 
 (defun ticks-at-passing-place (me)

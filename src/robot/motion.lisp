@@ -68,8 +68,8 @@ NIL; and whether the obstacle is in another column."
       t)))
 
 (defun let-others-go-first (robot x y)
-  "Let the robots in the cell that holds (X,Y), which bar the way of ROBOT, drive now if they have
-yet to drive in this tick. Return true if there were any."
+  "Let robots in the cell of (X,Y), which bar the way of ROBOT, drive now if they have yet to drive
+in this tick. Return true if there were any."
   (let* ((world (robot-world robot)) (index (map-index (world-map world) x y)) (bodies '()))
     (when (and index (robot-body robot))
       (do-cell-bodies (body index world)

@@ -1,7 +1,6 @@
 ;;;; traffic.lisp -- the travels of several robots that the tests make, a thousand of each.
 
-;;; Prints how many fail. Only some of the travels of five robots against five should: there the
-;;; patience of robots may run out. A number after the program's name is the number of seeds.
+;;; Prints how many fail; none should. A number after the program's name is the number of seeds.
 
 (in-package :ars-magna.benchmarks)
 
