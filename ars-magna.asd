@@ -118,7 +118,7 @@
 
 (defsystem "ars-magna"
   :description "An abstract robot simulator for people who build reactive planners."
-  :version "1.10.0"
+  :version "1.11.0"
   :license "MIT"
   :depends-on ("ars-magna/core" "chipz" "lparallel")
   :serial t
