@@ -4,7 +4,7 @@
 
 (export '(set-robot-pose set-robot-angle drive-tick turn-tick robot-speed-now speed-zero-p
           longest-step tick-distance robot-turn-angle-now record-movement-start robot-last-move
-          robot-last-move-estimate robot-cell-index))
+          robot-last-move-estimate robot-cell-index drives-robot-p))
 
 ;;; Motion is swept: the robot passes through each cell between its position and its target, and
 ;;; stops just short of the first that blocks. Its own cell never blocks, so a thing that moves
@@ -67,22 +67,38 @@ NIL; and whether the obstacle is in another column."
       (run-early agenda event)
       t)))
 
+(declaim (inline carry-body))
+(defun carry-body (robot)
+  "Move the body of ROBOT, if it has one, to the position of ROBOT."
+  (let ((body (robot-body robot)))
+    (when body (move-body body (robot-x robot) (robot-y robot)))))
+
 (defun let-others-go-first (robot x y)
   "Let robots in the cell that holds (X,Y), which bar the way of ROBOT, drive now if they have yet to
-drive in this tick. Return true if there were any."
-  (let* ((world (robot-world robot)) (index (map-index (world-map world) x y)) (bodies '()))
+drive in this tick. Return true if there were any. ROBOT must then look for its way again."
+  (let* ((world (robot-world robot)) (index (map-index (world-map world) x y)) (robots '()))
     (when (and index (robot-body robot))
       (do-cell-bodies (body index world)
-        (when (thing-obsmove-p body) (push (body-robot body) bodies)))
-      (some #'identity (mapcar #'drive-early (nreverse bodies))))))
+        (when (thing-obsmove-p body) (push (body-robot body) robots)))
+      ;; ROBOT may have passed a corner already.
+      (when robots (carry-body robot))
+      (some #'identity (mapcar #'drive-early (nreverse robots))))))
+
+(defun let-others-leave-corner (robot x y column row)
+  "If ROBOT, in the cell at COLUMN and ROW, could pass a corner at (X,Y) but for robots in the cell
+beyond, call LET-OTHERS-GO-FIRST for these and return its value."
+  (let ((world (robot-world robot)))
+    (when (robot-body robot)
+      (multiple-value-bind (beyond-x beyond-y) (point-beyond-corner world +blocking+ x y column row)
+        (and beyond-x
+             (blocked-cell-p world beyond-x beyond-y +blocking+)
+             (let-others-go-first robot beyond-x beyond-y))))))
 
 (defun pass-corner (robot x y column row)
   "If only a corner at (X,Y) blocks ROBOT, which is in the cell at COLUMN and ROW, move ROBOT past
 the corner. Return true if ROBOT moved."
   (let ((world (robot-world robot)))
     (multiple-value-bind (beyond-x beyond-y) (point-beyond-corner world +blocking+ x y column row)
-      (when (and beyond-x (blocked-cell-p world beyond-x beyond-y +blocking+))
-        (let-others-go-first robot beyond-x beyond-y))
       (unless (or (null beyond-x)
                   (blocked-cell-p world beyond-x beyond-y +blocking+))
         (setf (robot-x robot) beyond-x
@@ -124,21 +140,22 @@ metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL."
   "ROBOT has moved MOVED metres and has LEFT to go. Stop ROBOT before the obstacle BLOCK, which is
 in the next column if SIDEWAYS, else in the next row. If ROBOT only touches the obstacle, continue.
 Return the obstacle that stops ROBOT, or NIL."
-  (let ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved))))
+  (let* ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved)))
+         (crosses (if sideways
+                      (may-cross-border-p y cell-y dy left)
+                      (may-cross-border-p x cell-x dx left))))
     (cond ((only-touches-p (if sideways dx dy) left)
            (move-within-cell robot dx dy moved cell-x cell-y)
            (if sideways
                (continue-move robot 0d0 dy left moved)
                (continue-move robot dx 0d0 left moved)))
-          ((and (eq block :thing)
-                (let-others-go-first robot
-                  (+ 0.5d0 cell-x (if sideways (signum dx) 0))
-                  (+ 0.5d0 cell-y (if sideways 0 (signum dy)))))
+          ((or (and (eq block :thing)
+                    (let-others-go-first robot
+                      (+ 0.5d0 cell-x (if sideways (signum dx) 0))
+                      (+ 0.5d0 cell-y (if sideways 0 (signum dy)))))
+               (and crosses (let-others-leave-corner robot x y cell-x cell-y)))
            (continue-move robot dx dy (+ moved left) 0d0))
-          ((and (if sideways
-                    (may-cross-border-p y cell-y dy left)
-                    (may-cross-border-p x cell-x dx left))
-                (pass-corner robot x y cell-x cell-y))
+          ((and crosses (pass-corner robot x y cell-x cell-y))
            (continue-move robot dx dy left moved))
           (t (move-within-cell robot dx dy (max 0d0 (- moved +contact-gap+)) cell-x cell-y)
              block))))
@@ -200,12 +217,6 @@ robot can drive along the border of two cells and stay in one cell."
           (robot-cos robot) (snap-heading-component (cosine angle))
           (robot-sin robot) (snap-heading-component (sine angle))))
   robot)
-
-(declaim (inline carry-body))
-(defun carry-body (robot)
-  "Move the body of ROBOT, if it has one, to the position of ROBOT."
-  (let ((body (robot-body robot)))
-    (when body (move-body body (robot-x robot) (robot-y robot)))))
 
 (defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))
   "Put ROBOT at (X,Y), in metres, heading ANGLE, at once; its odometers do not change."
