@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(robot-full-name robot-label find-robot-named arrange-robots robots-in-order occupant-text turn-salt))
+(export '(robot-full-name robot-label find-robot-named arrange-robots robots-in-order robot-at
+          occupant-text turn-salt))
 
 ;;; A robot alone in its world uses the world's dice and has no body, as in the manual. From two
 ;;; robots on, each robot has its own dice, keyed by its full name, and a body, unless the world's
@@ -28,13 +29,17 @@ differs only in its package, else the name without package."
         (symbol-name name))))
 
 (defun find-robot-named (name robots)
-  "Return the robot of ROBOTS with NAME, or NIL. NAME is a symbol; or a string, a full name or a name
-without package. The name without package of several robots means the first."
+  "Return the robot of ROBOTS with NAME, or NIL. NAME is a symbol; or a string, a full name or a
+name without package. The name without package of several robots means the first."
   (flet ((full-name-p (robot)
            (string-equal name (robot-full-name robot))))
     (or (and (symbolp name) (find name robots :key #'robot-name :test #'eq))
         (and (stringp name) (find-if #'full-name-p robots))
         (find name robots :key #'robot-name :test #'same-name-p))))
+
+(defun sorted-by-full-name (robots)
+  (flet ((named (robot) (cons (robot-full-name robot) robot)))
+    (mapcar #'cdr (sort (mapcar #'named robots) #'string< :key #'car))))
 
 (defun robots-in-order (world)
   "Return a list of the robots in WORLD, sorted by their full names. Do not alter the list."
@@ -42,8 +47,7 @@ without package. The name without package of several robots means the first."
     (if (null (rest robots))
         robots
         (or (world-roster world)
-            (setf (world-roster world)
-                  (sort (copy-list robots) #'string< :key #'robot-full-name))))))
+            (setf (world-roster world) (sorted-by-full-name robots))))))
 
 (defmethod parts-to-digest ((world world) (parts list))
   (if (and (rest parts) (robot-p (first parts)))
@@ -60,11 +64,16 @@ or :manipulations. They are the world's dice if ROBOT is alone in its world; see
   (the dice (svref (world-dice-set (the world (robot-world robot)))
                    (+ (robot-dice-base robot) (dice-index purpose)))))
 
-(defun arrange-dice (world names)
-  (unless (equal names (world-dice-names world)) (give-dice world names))
-  (dolist (robot (world-robots world))
-    (setf (robot-dice-base robot) (if names (position-of-dice (robot-full-name robot) names) 0)
-          (robot-key robot) (text-hash (robot-full-name robot)))))
+(defun arrange-dice (world robots)
+  "Give each of ROBOTS, which are sorted, its own dice in WORLD if there are several."
+  (let ((names (mapcar #'robot-full-name robots)) (several-p (rest robots)))
+    (unless (equal (and several-p names) (world-dice-names world))
+      (give-dice world (and several-p names)))
+    (loop for robot in robots
+          for name in names
+          for base from (length +dice-purposes+) by (length +dice-purposes+)
+          do (setf (robot-dice-base robot) (if several-p base 0)
+                   (robot-key robot) (text-hash name)))))
 
 ;;; Bodies.
 
@@ -91,7 +100,7 @@ away. Call this function whenever robots have joined or left WORLD, and after a 
   (setf (world-roster world) '())
   (let* ((several-p (rest (world-robots world)))
          (robots (robots-in-order world)))
-    (arrange-dice world (and several-p (mapcar #'robot-full-name robots)))
+    (arrange-dice world robots)
     (if (and several-p (not (world-ghosts-p world)))
         (dolist (robot robots) (unless (robot-body robot) (give-body robot)))
         (mapc #'take-body robots))))

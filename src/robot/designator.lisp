@@ -162,7 +162,7 @@ bin or the open space where it was seen. False for places."
   (copy-robot-object designator (designator-robot designator) fork))
 
 (defmethod reference ((designator designator))
-  (list :designator (string (robot-name (designator-robot designator)))
+  (list :designator (robot-label (designator-robot designator))
         (if (designator-valid-p designator) (designator-serial designator) -1)
         (designator-number designator)
         (designator-type designator)))

@@ -74,8 +74,8 @@ NIL; and whether the obstacle is in another column."
     (when body (move-body body (robot-x robot) (robot-y robot)))))
 
 (defun let-others-go-first (robot x y)
-  "Let robots in the cell that holds (X,Y), which bar the way of ROBOT, drive now if they have yet to
-drive in this tick. Return true if there were any. ROBOT must then look for its way again."
+  "Let robots in the cell that holds (X,Y), which bar the way of ROBOT, drive now if they have yet
+to drive in this tick. Return true if there were any. ROBOT must then look for its way again."
   (let* ((world (robot-world robot)) (index (map-index (world-map world) x y)) (robots '()))
     (when (and index (robot-body robot))
       (do-cell-bodies (body index world)

@@ -79,6 +79,20 @@ robot's cell the walk ends with probability PROB-STOP*, and always at the map's 
                                    dice))
       (make-sighting type nil x y data))))
 
+(defun random-thing (world dice)
+  "Return a random thing in WORLD that is no body of a robot; NIL if there are none, or by chance if
+things have been destroyed."
+  (let* ((bodies (count-if #'robot-body (world-robots world)))
+         (count (- (world-rank-count world) bodies)))
+    (when (plusp count)
+      (let ((index (roll-index count dice)))
+        (if (zerop bodies)
+            (thing-of-rank index world)
+            (loop for rank from 0
+                  for thing = (thing-of-rank rank world)
+                  unless (and thing (robot-body-p thing)) do (decf index)
+                  when (minusp index) return thing))))))
+
 (defun false-description (world demands dice)
   "Return a random description that meets DEMANDS. Other attributes may be added, each with the
 value of a random thing in WORLD."
@@ -90,11 +104,7 @@ value of a random thing in WORLD."
                                           (roll-element (demand-choices demand) dice))))))
     (append (notice-attributes (world-map world) (mapcar #'first readings)
                                (lambda (attribute)
-                                 ;; NIL if there are none, or none has this rank.
-                                 (let* ((count (world-rank-count world))
-                                        (thing (and (plusp count)
-                                                    (thing-of-rank (roll-index count dice)
-                                                                   world))))
+                                 (let ((thing (random-thing world dice)))
                                    (values (and thing
                                                 (thing-attribute-value
                                                  thing (attribute-name attribute)))

@@ -93,13 +93,24 @@ recorded at the same point of the new journal."
     (call-each (lambda (observer) (call-user-code observer "an observer" simulation))
                (simulation-observers simulation))))
 
+(defun participants-in-order (simulation)
+  "Return the participants of SIMULATION in the order in which they react to this tick: the turns of
+their robots if there are several robots, else the order in which they joined."
+  (let ((participants (simulation-participants simulation))
+        (salt (agenda-salt (simulation-agenda simulation))))
+    (if (and salt (rest participants))
+        (stable-sort (copy-list participants) #'<
+                     :key (lambda (participant)
+                            (turn-of-resource (participant-robot participant) salt)))
+        participants)))
+
 (defun let-participants-act (simulation)
   (let ((*tick-dice* nil))
     (flet ((act (participant)
              (call-user-code #'participant-after-tick (participant-origin participant)
                              participant simulation)))
       (declare (dynamic-extent #'act))
-      (call-each #'act (simulation-participants simulation)))))
+      (call-each #'act (participants-in-order simulation)))))
 
 (declaim (inline keep-fork-if-due))
 (defun keep-fork-if-due (simulation)

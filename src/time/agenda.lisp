@@ -4,7 +4,7 @@
 
 (export '(event agenda make-agenda queue-event requeue-event +longest-delay+ cancel-event
           interrupt-event pending-event advance-agenda pending-events request-name
-          note-interruption interruption resource-key run-early due-event-p))
+          note-interruption interruption resource-key turn-of-resource run-early due-event-p))
 
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
 ;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; later events wait
@@ -55,8 +55,8 @@
   (beyond nil bucket :writable)
   (pending 0 fixnum "how many events are pending" :writable :export)
   (unequal 0 fixnum "how many of those have a priority other than 0" :writable)
-  (salt nil (or null (unsigned-byte 64)) "a number from which the order of robots in the current tick
-is computed, or NIL if there are not several robots" :writable :export)
+  (salt nil (or null (unsigned-byte 64)) "a number from which the order of robots in the current
+tick is computed, or NIL if there are not several robots" :writable :export)
   (claims (make-hash-table :test 'equal) hash-table "the pending event of each resource that is not
 a RESOURCE structure; lists and strings are the same resource if they look the same"))
 

@@ -125,7 +125,8 @@ Return the world of HOLDER."
   (when (and (thing-p holder) (not (thing-alive-p holder)))
     (reject-use "~A has been destroyed." holder))
   (when (body-p holder)
-    (reject-use "~A is a robot. Things can be in a robot's hands and bins, not in its body." holder))
+    (reject-use "~A is a robot. Things can be in a robot's hands and bins, not in its body."
+                holder))
   (when thing
     (unless (eq (location-world holder) (thing-world thing))
       (reject-use "~A cannot go into ~A, which is in another world." thing (location-name holder)))
@@ -141,7 +142,8 @@ Return the world of HOLDER."
     (reject-use "~A is a prototype; make things from it with (new-thing ... :prototype)." thing))
   (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing))
   (when (body-p thing)
-    (reject-use "~A is a robot: its body moves only with the robot. PLACE-ROBOT puts a robot elsewhere."
+    (reject-use "~A is a robot: its body moves only with the robot. PLACE-ROBOT puts a robot ~
+                 elsewhere."
                 thing)))
 
 (defun relocate (thing location &optional x y)

@@ -3,8 +3,8 @@
 (in-package :ars-magna.world)
 
 (export '(location-contents location-position location-world location-closed-p location-full-p
-          location-name location-phrase thing body-robot robot-body-p thing-holders-text similar-domain-value
-          warn-of-unknown-substance))
+          location-name location-phrase thing body-robot robot-body-p thing-holders-text
+          similar-domain-value warn-of-unknown-substance))
 
 ;;; The location of a thing is :FLOOR (then it has a position), or its holder, a thing or, in the
 ;;; layer above, a hand or storage bin, or NIL, as for prototypes and destroyed things. Holders
