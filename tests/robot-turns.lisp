@@ -105,7 +105,7 @@ STARTS, lists (x y angle). Their speed is 1."
                           :parameters *still*)
              (is (equal '(nil nil) (go-all robots 1)))
              (is (= 6 (floor (robot:robot-x (first robots)))))
-             (is (= 7 (floor (robot:robot-x (second robots)))))))))
+             (is (= 7 (floor (robot:robot-x (second robots))))))))
 
 (defun noisy-ways (starts driving)
   "Return, for each robot of a run with robots at STARTS, where it is after each of 30 ticks and

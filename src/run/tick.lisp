@@ -99,9 +99,7 @@ their robots if there are several robots, else the order in which they joined."
   (let ((participants (simulation-participants simulation))
         (salt (agenda-salt (simulation-agenda simulation))))
     (if (and salt (rest participants))
-        (stable-sort (copy-list participants) #'<
-                     :key (lambda (participant)
-                            (turn-of-resource (participant-robot participant) salt)))
+        (sorted-by-turn participants #'participant-robot salt)
         participants)))
 
 (defun let-participants-act (simulation)

@@ -4,7 +4,7 @@
 
 (export '(event agenda make-agenda queue-event requeue-event +longest-delay+ cancel-event
           interrupt-event pending-event advance-agenda pending-events request-name
-          note-interruption interruption resource-key turn-of-resource run-early due-event-p))
+          note-interruption interruption resource-key sorted-by-turn run-early due-event-p))
 
 ;;; A hierarchical timing wheel. The near wheel has a bucket for each tick of the current page of
 ;;; 256 ticks, the far wheel one for each page of the current volume of 256 pages; later events wait
@@ -203,20 +203,29 @@ RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is c
 (defconstant +turn-bits+ 41 "The number of bits of a turn that are compared.")
 (defconstant +position-bits+ (- 61 +turn-bits+) "The number of bits for a position in a bucket.")
 
-(defun sort-by-turn (events salt)
-  "Return EVENTS, a list, sorted by the turns of their robots in a tick with SALT; stable."
-  (declare #.*hot* (type list events))
-  (let* ((vector (coerce events 'simple-vector))
-         (order (make-array (length vector) :element-type 'fixnum)))
-    (declare (type simple-vector vector))
-    (dotimes (position (length vector))
-      (let ((turn (turn-of-resource (event-resource (svref vector position)) salt)))
-        (declare (type (unsigned-byte 64) turn))
-        (setf (aref order position)
-              (logior (ash (ash turn #.(- +turn-bits+ 64)) +position-bits+) position))))
-    (setf order (sort order #'<))
-    (loop for number across order
-          collect (svref vector (logand number #.(1- (ash 1 +position-bits+)))))))
+(defun sorted-by-numbers (items numbers)
+  "Return a list of ITEMS, a vector. NUMBERS is a vector of one fixnum for each, which ends in the
+position of the item. Sort by these numbers."
+  (declare #.*hot* (type simple-vector items) (type (simple-array fixnum (*)) numbers))
+  (loop for number across (the (simple-array fixnum (*)) (sort numbers #'<))
+        collect (svref items (logand number #.(1- (ash 1 +position-bits+))))))
+
+(defun sorted-by-turn (items resource-of salt)
+  "Return ITEMS, a list, sorted by the turns of their robots in a tick with SALT; stable.
+RESOURCE-OF is a function that returns the resource of an item, or NIL."
+  (declare #.*hot* (type list items) (type function resource-of))
+  (if (< (length items) (ash 1 +position-bits+))
+      (let* ((vector (coerce items 'simple-vector))
+             (numbers (make-array (length vector) :element-type 'fixnum)))
+        (declare (type simple-vector vector))
+        (dotimes (position (length vector))
+          (let ((turn (turn-of-resource (funcall resource-of (svref vector position)) salt)))
+            (declare (type (unsigned-byte 64) turn))
+            (setf (aref numbers position)
+                  (logior (ash (ash turn #.(- +turn-bits+ 64)) +position-bits+) position))))
+        (sorted-by-numbers vector numbers))
+      (stable-sort (copy-list items) #'<
+                   :key (lambda (item) (turn-of-resource (funcall resource-of item) salt)))))
 
 (defun due-event-p (agenda event)
   "True if EVENT, which is queued or was queued in AGENDA, is still to run in the current tick."
@@ -239,7 +248,7 @@ RESOURCE must have no pending event. If the event is interrupted, INTERRUPT is c
           ((and (zerop (agenda-unequal agenda)) (null salt)) (run-events-in-order agenda first))
           (t (let ((events (loop for event = first then (event-next event)
                                  while event collect event)))
-               (when salt (setf events (sort-by-turn events salt)))
+               (when salt (setf events (sorted-by-turn events #'event-resource salt)))
                (unless (zerop (agenda-unequal agenda))
                  (setf events (stable-sort events #'> :key #'event-priority)))
                (call-each (lambda (event) (run-if-due agenda event)) events))))))
