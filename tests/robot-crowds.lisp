@@ -25,18 +25,18 @@
                         collect (list (+ x .5d0) (+ y .5d0))))
    #'< :key (lambda (place) (+ (abs (- 12.5 (first place))) (abs (- 5.5 (second place)))))))
 
-(defun crowd-names (count)
+(defun names-in-crowd (count)
   (loop for number from 1 to count
         collect (intern (format nil "CROWD-~D" number) :ars-magna.tests)))
 
 (defun define-crowd (count &optional (order #'identity))
   "Define COUNT robots in the hall. ORDER is a function that puts their definitions into order."
   (loop for (name place number) in (funcall order
-                                            (loop for name in (crowd-names count)
+                                            (loop for name in (names-in-crowd count)
                                                   for place in (crowd-places)
                                                   for number from 0
                                                   collect (list name place number)))
-        do (robot:define-robot name 'crowd-hall place number
+        do (robot:define-robot name 'crowd-hall place (mod number 6)
              :cameras (list (list (* 2 pi) 3)) :hands '(6) :bins '(8)
              :attributes (case (mod number 3)
                            (0 '((:color red) (:size 4) (:obsview t)))
@@ -126,7 +126,7 @@ those that came to something else than the first: :FORK, :LOAD, :REWIND, :REPLAY
          (progn (rewind-to tick)
                 (wrong :rewind (crowd-digests ticks))))))))
 
-(defun crowd-ride (count commands seed &key (order (crowd-names count)) (ticks 40))
+(defun crowd-ride (count commands seed &key (order (names-in-crowd count)) (ticks 40))
   "Issue COMMANDS commands to COUNT robots in a run with SEED, whose robots are listed in ORDER.
 Return a list of what was wrong; a digest of all calls of continuations; and that of the state."
   (run:with-simulation (order :seed seed :journal t :keep 5 :parameters '((base:max-speed* 3)))
@@ -156,7 +156,7 @@ order, and the states are the same."
                   do (define-crowd 12 order)
                   collect (multiple-value-list
                            (crowd-ride 12 600 5 :ticks 5
-                                                :order (funcall order (crowd-names 12)))))))
+                                                :order (funcall order (names-in-crowd 12)))))))
       (is-true (third (first outcomes)))
       (dolist (outcome outcomes)
         (is (equal (rest (first outcomes)) (rest outcome)))

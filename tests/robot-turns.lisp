@@ -40,7 +40,7 @@ STARTS, lists (x y angle). Their speed is 1."
                                          (lambda (code &rest results)
                                            (declare (ignore results))
                                            (setf (nth number codes) code)))))
-    (run:run-ticks (+ ticks 3))
+    (run:run-ticks (+ ticks 12))
     codes))
 
 (defun robot-xs (robots) (mapcar #'robot:robot-x robots))
@@ -77,8 +77,7 @@ STARTS, lists (x y angle). Their speed is 1."
   "Who would change places, or go round in a circle, is blocked."
   (let ((right 0) (down (/ pi 2)) (left pi) (up (- (/ pi 2))))
     (loop for starts in `(((5.5 4.5 ,right) (6.5 4.5 ,left))
-                          ((5.5 4.5 ,right) (6.5 4.5 ,down) (6.5 5.5 ,left) (5.5 5.5 ,up))
-                          ((5.5 4.5 ,(/ pi 4)) (6.5 5.5 ,(* 5/4 pi))))
+                          ((5.5 4.5 ,right) (6.5 4.5 ,down) (6.5 5.5 ,left) (5.5 5.5 ,up)))
           do (loop for seed from 1 to 10
                    do (with-turners (robots starts :seed seed :parameters *still*)
                         (is (every (lambda (code) (eq code :robot-blocked)) (go-all robots 3)))
@@ -118,7 +117,7 @@ what its odometer reads. The first DRIVING of them drive, with noise."
                (setf ways (loop for robot in robots
                                 for way in ways
                                 collect (cons (list (robot:robot-x robot)
-                                                    (multiple-value-list
+                                                    (princ-to-string
                                                      (robot:get-odometer-pos
                                                       (robot:robot-main-odometer robot))))
                                               way))))

@@ -80,7 +80,8 @@ only DESIGNATOR, with PROBABILITY."
 (defun grasp (hand thing dice)
   "Let HAND grasp THING (NIL: a false sighting). Return an error code or NIL (readings 151, 231)."
   (cond ((or (null thing) (chance prob-miss-grasp* dice)) :missed-grasp)
-        ((> (thing-total-weight thing) (hand-strength hand)) :insufficient-strength)
+        ((or (body-p thing) (> (thing-total-weight thing) (hand-strength hand)))
+         :insufficient-strength)
         (t (move-thing thing hand)
            nil)))
 

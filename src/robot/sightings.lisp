@@ -80,18 +80,16 @@ robot's cell the walk ends with probability PROB-STOP*, and always at the map's 
       (make-sighting type nil x y data))))
 
 (defun random-thing (world dice)
-  "Return a random thing in WORLD that is no body of a robot; NIL if there are none, or by chance if
-things have been destroyed."
-  (let* ((bodies (count-if #'robot-body (world-robots world)))
-         (count (- (world-rank-count world) bodies)))
-    (when (plusp count)
-      (let ((index (roll-index count dice)))
-        (if (zerop bodies)
-            (thing-of-rank index world)
-            (loop for rank from 0
-                  for thing = (thing-of-rank rank world)
-                  unless (and thing (robot-body-p thing)) do (decf index)
-                  when (minusp index) return thing))))))
+  "Return a random thing of WORLD, but no body of a robot, or NIL. So false sightings of a robot do
+not depend on how many other robots there are."
+  (let* ((bodies (remove nil (mapcar #'robot-body (world-robots world))))
+         (count (- (world-rank-count world) (length bodies)))
+         ;; NIL if there are none, or none has this rank.
+         (rank (and (plusp count) (roll-index count dice))))
+    (when rank
+      (dolist (body-rank (sort (mapcar #'thing-rank bodies) #'<))
+        (when (>= rank body-rank) (incf rank)))
+      (thing-of-rank rank world))))
 
 (defun false-description (world demands dice)
   "Return a random description that meets DEMANDS. Other attributes may be added, each with the

@@ -104,7 +104,7 @@ the sizes of the things directly in it (a double-float, at least 0). Signals WRO
    (capacity 0d0 double-float "the thing's :capacity, 0 if it is no container" :addition)
    (substance-parameter 0d0 double-float
                         "the parameter of the thing's :substance, 0 if unspecified" :addition)
-   (rank 0 fixnum "the index of the thing in the vector of its world's things" :near)))
+   (rank 0 fixnum "the index of the thing in the vector of its world's things" :near :export)))
 
 ;; Its position follows the robot's. Serial 0 in a world: bodies are not numbered.
 (addition body body-p)
