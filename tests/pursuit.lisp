@@ -95,6 +95,16 @@ first if that has yet to move, and does not itself wait."
                         (cons (floor (robot:robot-x robot)) (floor (robot:robot-y robot))))
        robots))
 
+(defun drive-a-cell (robot)
+  "Let ROBOT drive for a tick. Put it back into the middle of its cell if it is blocked: at the side
+of a cell it would slip past corners."
+  (command:robot-go-forward
+   robot 1
+   (lambda (code robot)
+     (when code
+       (multiple-value-bind (x y) (robot:robot-position robot)
+         (robot:place-robot robot (+ .5d0 (floor x)) (+ .5d0 (floor y)) (robot:robot-angle robot)))))))
+
 (defun drive-round (robots directions)
   "Let ROBOTS turn in DIRECTIONS, in one tick, and drive for a tick."
   (loop for robot in robots
@@ -104,13 +114,15 @@ first if that has yet to move, and does not itself wait."
   (run:run-ticks 1)
   (loop for robot in robots
         for direction across directions
-        do (when direction (command:robot-go-forward robot 1)))
+        do (when direction (drive-a-cell robot)))
   (run:run-ticks 1))
 
 (defun simulated-pursuit (seed)
   "Return the round in which the prey is caught, or NIL; and the last cells."
   (run:with-simulation ((predator-1 predator-2 predator-3 predator-4 prey)
-                        :seed seed :clean t :parameters '((base:max-turn-angle* 4)))
+                        :seed seed :clean t
+                        :parameters '((base:max-turn-angle* 4) (base:robot-turn-delay* 0)
+                                      (base:robot-move-delay* 0)))
     (let ((dice (base:make-dice seed "pursuit"))
           (robots (list predator-1 predator-2 predator-3 predator-4 prey)))
       (dolist (robot robots)

@@ -124,8 +124,8 @@ so; else NIL."
 (defmethod resource-key ((part part)) (robot-key (part-robot part)))
 (defmethod resource-key ((mind mind)) (robot-key (mind-robot mind)))
 
-(defun turn-salt (world)
-  "Return a number that determines the order of the robots of WORLD in this tick, or NIL if there
-are fewer than two robots."
+(defun turn-salt (world tick)
+  "Return a number that determines the order of the robots of WORLD in TICK, or NIL if there are
+fewer than two robots."
   (and (world-dice-names world)
-       (mixed-word (world-seed world) (world-tick world))))
+       (mixed-word (world-seed world) tick)))

@@ -25,7 +25,7 @@ begun; skip the phases up to this number. PLACE is 0 before the first phase and 
   "Allow this thread to change WORLD in a tick of TIMELINE."
   (setf (timeline-ticking-p timeline) t
         (timeline-moments timeline) 0
-        (agenda-salt (timeline-agenda timeline)) (turn-salt world)
+        (agenda-salt (timeline-agenda timeline)) (turn-salt world (1+ (timeline-tick timeline)))
         (world-writer world) (current-thread))
   (begin-tick-dice (timeline-tick-dice timeline) (world-seed world) (timeline-tick timeline)))
 
