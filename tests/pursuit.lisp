@@ -59,8 +59,9 @@
   "Return the numbers of the robots in the order in which they act in TICK."
   (flet ((turn (number)
            (base:mixed-word
-            (base:text-hash (format nil "ARS-MAGNA.TESTS::~[PREDATOR-1~;PREDATOR-2~;PREDATOR-3~;~
-                                         PREDATOR-4~;PREY~]" number))
+            (ldb (byte 62 0)
+                 (base:text-hash (format nil "ARS-MAGNA.TESTS::~[PREDATOR-1~;PREDATOR-2~;~
+                                              PREDATOR-3~;PREDATOR-4~;PREY~]" number)))
             (base:mixed-word seed tick))))
     (sort (list 0 1 2 3 4) #'< :key #'turn)))
 

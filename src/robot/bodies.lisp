@@ -73,7 +73,7 @@ or :manipulations. They are the world's dice if ROBOT is alone in its world; see
           for name in names
           for base from (length +dice-purposes+) by (length +dice-purposes+)
           do (setf (robot-dice-base robot) (if several-p base 0)
-                   (robot-key robot) (text-hash name)))))
+                   (robot-key robot) (ldb (byte 62 0) (text-hash name))))))
 
 ;;; Bodies.
 

@@ -25,8 +25,10 @@ begun; skip the phases up to this number. PLACE is 0 before the first phase and 
   "Allow this thread to change WORLD in a tick of TIMELINE."
   (setf (timeline-ticking-p timeline) t
         (timeline-moments timeline) 0
-        (agenda-salt (timeline-agenda timeline)) (turn-salt world (1+ (timeline-tick timeline)))
         (world-writer world) (current-thread))
+  (let ((agenda (timeline-agenda timeline)))
+    (when (or (world-dice-names world) (agenda-salt agenda))
+      (setf (agenda-salt agenda) (turn-salt world (1+ (agenda-tick agenda))))))
   (begin-tick-dice (timeline-tick-dice timeline) (world-seed world) (timeline-tick timeline)))
 
 (defun end-world-changes (timeline world)
