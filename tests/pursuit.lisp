@@ -104,7 +104,8 @@ of a cell it would slip past corners."
    (lambda (code robot)
      (when code
        (multiple-value-bind (x y) (robot:robot-position robot)
-         (robot:place-robot robot (+ .5d0 (floor x)) (+ .5d0 (floor y)) (robot:robot-angle robot)))))))
+         (robot:place-robot robot (+ .5d0 (floor x)) (+ .5d0 (floor y))
+                            (robot:robot-angle robot)))))))
 
 (defun drive-round (robots directions)
   "Let ROBOTS turn in DIRECTIONS, in one tick, and drive for a tick."
