@@ -58,11 +58,11 @@ STARTS, lists (x y angle). Their speed is 1."
                    (robot-xs robots)))))))
 
 (test robot-turns.a-long-convoy-runs
-  "A thousand robots, each barred by the next."
+  "Four hundred robots, each barred by the next."
   (base:with-own-definitions ()
     (handler-bind ((warning #'muffle-warning))
       (world:define-map 'long-hall 1100 3 :clauses '((rect (0 0) (1099 2) bricks 1))))
-    (let ((names (turn-names 1000)))
+    (let ((names (turn-names 400)))
       (loop for name in names
             for number from 1
             do (robot:define-robot name 'long-hall (list (+ number .5d0) 1.5d0) 0))
@@ -70,7 +70,7 @@ STARTS, lists (x y angle). Their speed is 1."
         (let ((robots (mapcar #'symbol-value names)))
           (dolist (robot robots) (command:robot-set-speed robot 1))
           (run:run-ticks 2)
-          (is (equal (make-list 1000) (go-all robots 5)))
+          (is (equal (make-list 400) (go-all robots 5)))
           (is (= 6.5d0 (robot:robot-x (first robots)))))))))
 
 (test robot-turns.swaps-and-circles-are-blocked
