@@ -129,9 +129,9 @@ those that came to something else than the first: :FORK, :LOAD, :REWIND, :REPLAY
 (defun crowd-ride (count commands seed &key (order (names-in-crowd count)) (ticks 40))
   "Issue COMMANDS commands to COUNT robots in a run with SEED, whose robots are listed in ORDER.
 Return a list of what was wrong; a digest of all calls of continuations; and that of the state."
-  (run:with-simulation (order :seed seed :journal t :keep 5 :parameters '((base:max-speed* 3)))
-    (let ((*ride* (make-ride (base:make-dice seed "ride")))
-          (*error-output* (make-broadcast-stream)))
+  (let ((*ride* (make-ride (base:make-dice seed "ride")))
+        (*error-output* (make-broadcast-stream)))
+    (run:with-simulation (order :seed seed :journal t :keep 5 :parameters '((base:max-speed* 3)))
       (drive-crowd commands count)
       (let ((digest (run:state-digest)) (calls (base:digest-value (ride-calls *ride*)))
             (troubles (append (ride-troubles *ride*) (ways-gone-wrong ticks))))

@@ -56,13 +56,17 @@ name without package. The name without package of several robots means the first
 
 ;;; Dice.
 
-(declaim (inline robot-dice))
+(declaim (inline dice-at robot-dice))
+(defun dice-at (world base purpose)
+  "Return the dice for PURPOSE of the robot in WORLD whose ROBOT-DICE-BASE is BASE."
+  (declare (type world world) (type (unsigned-byte 32) base))
+  (the dice (svref (world-dice-set world) (+ base (dice-index purpose)))))
+
 (addition robot-dice)
 (defun robot-dice (robot purpose)
   "Return the dice of ROBOT for PURPOSE: :motion, :odometry, :place, :looking, :tracking, :handling
 or :manipulations. They are the world's dice if ROBOT is alone in its world; see WORLD-DICE."
-  (the dice (svref (world-dice-set (the world (robot-world robot)))
-                   (+ (robot-dice-base robot) (dice-index purpose)))))
+  (dice-at (robot-world robot) (robot-dice-base robot) purpose))
 
 (defun arrange-dice (world robots)
   "Give each of ROBOTS, which are sorted, its own dice in WORLD if there are several."
@@ -101,6 +105,8 @@ away. Call this function whenever robots have joined or left WORLD, and after a 
   (let* ((several-p (rest (world-robots world)))
          (robots (robots-in-order world)))
     (arrange-dice world robots)
+    (when (and (world-timeline world) (not several-p))
+      (setf (agenda-salt (timeline-agenda (world-timeline world))) nil))
     (if (and several-p (not (world-ghosts-p world)))
         (dolist (robot robots) (unless (robot-body robot) (give-body robot)))
         (mapc #'take-body robots))))
@@ -125,7 +131,5 @@ so; else NIL."
 (defmethod resource-key ((mind mind)) (robot-key (mind-robot mind)))
 
 (defun turn-salt (world tick)
-  "Return a number that determines the order of the robots of WORLD in TICK, or NIL if there are
-fewer than two robots."
-  (and (world-dice-names world)
-       (mixed-word (world-seed world) tick)))
+  "Return a number that determines the order of the robots of WORLD in TICK."
+  (mixed-word (world-seed world) tick))

@@ -77,7 +77,7 @@ NIL; and whether the obstacle is in another column."
   "Let robots in the cell that holds (X,Y), which bar the way of ROBOT, drive now if they have yet
 to drive in this tick. Return true if there were any. ROBOT must then look for its way again."
   (let* ((world (robot-world robot)) (index (map-index (world-map world) x y)) (robots '()))
-    (when (and index (robot-body robot))
+    (when index
       (do-cell-bodies (body index world)
         (when (thing-obsmove-p body) (push (body-robot body) robots)))
       ;; ROBOT may have passed a corner already.
@@ -88,11 +88,10 @@ to drive in this tick. Return true if there were any. ROBOT must then look for i
   "If ROBOT, in the cell at COLUMN and ROW, could pass a corner at (X,Y) but for robots in the cell
 beyond, call LET-OTHERS-GO-FIRST for these and return its value."
   (let ((world (robot-world robot)))
-    (when (robot-body robot)
-      (multiple-value-bind (beyond-x beyond-y) (point-beyond-corner world +blocking+ x y column row)
-        (and beyond-x
-             (blocked-cell-p world beyond-x beyond-y +blocking+)
-             (let-others-go-first robot beyond-x beyond-y))))))
+    (multiple-value-bind (beyond-x beyond-y) (point-beyond-corner world +blocking+ x y column row)
+      (and beyond-x
+           (blocked-cell-p world beyond-x beyond-y +blocking+)
+           (let-others-go-first robot beyond-x beyond-y)))))
 
 (defun pass-corner (robot x y column row)
   "If only a corner at (X,Y) blocks ROBOT, which is in the cell at COLUMN and ROW, move ROBOT past
@@ -149,11 +148,12 @@ Return the obstacle that stops ROBOT, or NIL."
            (if sideways
                (continue-move robot 0d0 dy left moved)
                (continue-move robot dx 0d0 left moved)))
-          ((or (and (eq block :thing)
-                    (let-others-go-first robot
-                      (+ 0.5d0 cell-x (if sideways (signum dx) 0))
-                      (+ 0.5d0 cell-y (if sideways 0 (signum dy)))))
-               (and crosses (let-others-leave-corner robot x y cell-x cell-y)))
+          ((and (robot-body robot)
+                (or (and (eq block :thing)
+                         (let-others-go-first robot
+                           (+ 0.5d0 cell-x (if sideways (signum dx) 0))
+                           (+ 0.5d0 cell-y (if sideways 0 (signum dy)))))
+                    (and crosses (let-others-leave-corner robot x y cell-x cell-y))))
            (continue-move robot dx dy (+ moved left) 0d0))
           ((and crosses (pass-corner robot x y cell-x cell-y))
            (continue-move robot dx dy left moved))
@@ -293,15 +293,16 @@ uniformly distributed within MOTION-NOISE* of the speed; the odometers read an i
 contains the distance (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
+         (base (robot-dice-base robot))
          (step (tick-distance robot))
          (nominal (max (- step) (min limit step)))
          (noise (noise-of-step motion-noise* (abs nominal) (robot-speed-now robot)))
-         (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (robot-dice robot :motion)))
+         (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (dice-at world base :motion)))
                                                  1d0)))))
          (block (move-along-heading robot distance))
          (moved (abs (robot-moved robot)))
          (expected (if block moved (abs nominal)))
-         (dice (robot-dice robot :odometry))
+         (dice (dice-at world base :odometry))
          (low (- moved (* (roll dice) (max 0d0 (- moved (* expected (- 1d0 noise)))))))
          (high (+ moved (* (roll dice) (max 0d0 (- (* expected (+ 1d0 noise)) moved))))))
     (declare (type double-float noise step nominal distance moved expected low high))
