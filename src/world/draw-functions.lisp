@@ -97,6 +97,8 @@ without a function, the second value is a text with the reason and the remedy."
   (and (consp value) (same-name-p key :draw-function)))
 
 (defun descriptor-form (thing-name descriptor)
+  "Return a form whose value is DESCRIPTOR, an object descriptor that may contain code, of a thing
+with THING-NAME."
   `(list ,@(loop for (key value) in descriptor
                  collect `(list ',key ,(if (contains-code-p key value)
                                            (draw-function-form thing-name value)

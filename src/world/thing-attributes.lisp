@@ -96,6 +96,7 @@ a declared attribute or of an attribute of some thing."
         collect (checked-entry operator name value)))
 
 (defun descriptor-p (object)
+  "True if OBJECT is a list of lists (attribute value) that names each attribute once."
   (and (proper-list-p object)
        (loop for entry in object
              always (and (proper-list-p entry) (= 2 (length entry))

@@ -94,6 +94,7 @@ full name of a robot."
 
 (declaim (inline dice-index world-dice))
 (defun dice-index (purpose)
+  "Return the position of the dice for PURPOSE, a keyword, among the dice of a world or robot."
   (ecase purpose
     (:motion 0) (:odometry 1) (:place 2) (:looking 3) (:tracking 4)
     (:handling 5) (:kickers 6) (:manipulations 7) (:user 8)))

@@ -36,11 +36,14 @@
    simulation))
 
 (defun define-lookers (count)
-  "Define COUNT robots in a room, two cells apart. Return their names."
-  (loop for number below count
+  "Define COUNT robots in free cells of a room, two cells apart. Return their names."
+  (loop with map = (world:find-map 'benchmark-room)
+        with places = (loop for y from 20.5d0 below 60 by 3
+                            append (loop for x from 15.5d0 below 60 by 3
+                                         unless (world:wall-at-p map x y) collect (list x y)))
+        for number below count
         for name = (intern (format nil "LOOKER-~D" number) :ars-magna.benchmarks)
-        do (robot:define-robot name 'benchmark-room
-             (list (+ 15.5d0 (* 3 (mod number 10))) (+ 20.5d0 (* 3 (floor number 10)))) 0
+        do (robot:define-robot name 'benchmark-room (pop places) 0
              :cameras (list (list (/ pi 2) 50)))
         collect name))
 
