@@ -365,6 +365,7 @@
                  (:file "forking-plans") (:file "forking-live") (:file "forking-borders")
                  (:file "repeating")
                  (:file "agreement-scripts") (:file "agreement-making") (:file "agreement")
+                 (:file "robot-crowds") (:file "robot-turns") (:file "pursuit")
                  (:file "outliving") (:file "outliving-live") (:file "users-parts")
                  (:file "user-package") (:file "definitions") (:file "definitions-names")
                  (:file "definitions-mistakes") (:file "definitions-maps") (:file "homes")

@@ -41,9 +41,12 @@
          ,(make-between 1.2 (- height 1.2)) ,(random-attributes)
          ,(loop repeat (make-roll 3) collect (make-pick *accord-kickers*))))
 
-(defun random-robots (height)
-  (loop for name in (if (make-luck .5) '(accord-one) '(accord-one accord-two))
-        collect (list name (list (make-between 1.3 2.8) (make-between 1.3 (- height 1.3)))
+(defun random-robots ()
+  "Return one robot, or two or three in different cells."
+  (loop for name in (make-pick '((accord-one) (accord-one accord-two)
+                                 (accord-one accord-two accord-three)))
+        for row from 1 by 2
+        collect (list name (list (make-between 1.3 2.8) (make-between (+ row .1) (+ row .9)))
                       (make-pick '(0 1 2 4))
                       :cameras (list (list (* 2 pi) 5)) :hands '(10) :bins '(8))))
 
@@ -176,7 +179,7 @@
          (width (+ 8 (make-roll 6))) (height (+ 8 (make-roll 6))) (ticks (+ 10 (make-roll 90)))
          (*accord-sorts* (random-sorts)))
     (make-script :seed seed :width width :height height :ticks ticks :at (make-roll (1+ ticks))
-                 :clauses (random-clauses width height) :robots (random-robots height)
+                 :clauses (random-clauses width height) :robots (random-robots)
                  :thinking (make-pick '(:free :free :charged)) :keep (make-pick '(2 5 30))
                  :stride (make-pick '(1 3 10)) :late-p (make-luck .5)
                  :steps (append (loop repeat (make-roll 8)

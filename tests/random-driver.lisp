@@ -33,7 +33,7 @@
 (defun zoo-dice () (world:world-dice world:*world* :user))
 (defun zoo-chance (probability) (base:chance probability (zoo-dice)))
 (defun any-of (list) (and list (base:roll-element list (zoo-dice))))
-(defun zoo-robots () (world:world-robots world:*world*))
+(defun zoo-robots () (robot::robots-in-order world:*world*))
 (defun any-part (reader) (any-of (coerce (funcall reader (any-of (zoo-robots))) 'list)))
 
 (defun any-place-for (thing)
@@ -66,8 +66,10 @@
 
 (defstruct (ride (:constructor make-ride (dice)))
   "A random drive: its DICE, the designators it has got, the calls that wait for answers, and what
-has been answered or was wrong. Once it is over, answers lead on to nothing more."
+has been answered or was wrong. Once it is over, answers lead on to nothing more. CALLS is a digest
+of all calls, in order."
   dice
+  (calls (base:make-digest))
   (over-p nil)
   (designators '())
   (pending (make-hash-table :test 'eq))
@@ -103,6 +105,8 @@ has begun."
   "Note that the CALL of the command NAME was answered with RESULTS."
   (let ((answers (gethash call (ride-pending *ride*))))
     (incf (gethash (list name (first results)) (ride-outcomes *ride*) 0))
+    (base:digest-add (ride-calls *ride*) (list (run:simulation-tick time:*simulation*) name
+                                               (princ-to-string results)))
     (cond ((null answers) (complain "~A was answered after it had ended: ~S" name results))
           ((last-answer-p name (first results) answers) (remhash call (ride-pending *ride*)))
           (t (incf (gethash call (ride-pending *ride*)))))))

@@ -24,7 +24,7 @@
                 #:simulation-world #:simulation-messages #:robot-simulation
                 #:*simulation-variables* #:*simulator-hooks* #:add-participant
                 #:remove-participant #:participant-after-tick #:participant-after-ticks
-                #:participant-origin
+                #:participant-origin #:participant-robot
                 #:participant-busy-p #:participant-at-work-p #:participant-reseed
                 #:participant-digest #:participant-end #:participant-clock-stopped
                 #:participant-copy #:participant-at-rest #:check-forkable

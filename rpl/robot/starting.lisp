@@ -139,6 +139,9 @@ return true. No other thread may touch the plans meanwhile."
              (thinking-charged-p timeline)
              (not (skip-idle-tick (interface-runner interface) (timeline-tick timeline)))))))
 
+(defmethod participant-robot ((interface interface))
+  (interface-robot interface))
+
 (defmethod participant-origin ((interface interface))
   (or (interface-origin interface)
       (setf (interface-origin interface) (list "the plans of " (interface-robot interface)))))

@@ -149,7 +149,9 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
 ;; A robot that stops may coast.
 (defmethod drives-robot-p ((operation operation))
   (let ((command (operation-command operation)))
-    (or (trait-p :drives command) (trait-p :stops command))))
+    (or (trait-p :drives command)
+        (trait-p :stops command)
+        (eq 'robot-goto-designator (command-name command)))))
 
 ;; See reading 95.
 (define-command robot-stop (operation (robot robot))

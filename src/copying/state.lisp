@@ -3,8 +3,7 @@
 (in-package :ars-magna.copying)
 
 (export '(reference digest-state parts-to-digest contains-value-p closed-over-values
-          fields-of-type saved-slot-p
-                    blank-object
+          fields-of-type saved-slot-p blank-object
           note-savable-function savable-function-name find-savable-function contradiction
           signal-contradiction must-hold proper-list-of-p))
 

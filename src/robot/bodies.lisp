@@ -3,7 +3,7 @@
 (in-package :ars-magna.robot)
 
 (export '(robot-full-name robot-label name-label find-robot-named robots-meant arrange-robots
-          robots-in-order occupant-text turn-salt))
+          robots-in-order robot-at occupant-text turn-salt))
 
 ;;; A robot alone in its world uses the world's dice and has no body, as in the manual. From two
 ;;; robots on, each robot has its own dice, keyed by its full name, and a body, unless the world's
@@ -45,14 +45,17 @@ element of ROBOTS."
 without package. A name without package means the first robot with this name."
   (first (robots-meant name robots)))
 
+(defun sorted-by-full-name (robots)
+  (flet ((named (robot) (cons (robot-full-name robot) robot)))
+    (mapcar #'cdr (sort (mapcar #'named robots) #'string< :key #'car))))
+
 (defun robots-in-order (world)
   "Return a list of the robots in WORLD, sorted by their full names. Do not alter the list."
   (let ((robots (world-robots world)))
     (if (null (rest robots))
         robots
         (or (world-roster world)
-            (setf (world-roster world)
-                  (sort (copy-list robots) #'string< :key #'robot-full-name))))))
+            (setf (world-roster world) (sorted-by-full-name robots))))))
 
 (defmethod parts-to-digest ((world world) (parts list))
   (if (and (rest parts) (robot-p (first parts)))
@@ -61,19 +64,28 @@ without package. A name without package means the first robot with this name."
 
 ;;; Dice.
 
-(declaim (inline robot-dice))
+(declaim (inline dice-at robot-dice))
+(defun dice-at (world base purpose)
+  "Return the dice for PURPOSE of the robot in WORLD whose ROBOT-DICE-BASE is BASE."
+  (declare (type world world) (type (unsigned-byte 32) base))
+  (the dice (svref (world-dice-set world) (+ base (dice-index purpose)))))
+
 (addition robot-dice)
 (defun robot-dice (robot purpose)
   "Return the dice of ROBOT for PURPOSE: :motion, :odometry, :place, :looking, :tracking, :handling
 or :manipulations. They are the world's dice if ROBOT is alone in its world; see WORLD-DICE."
-  (the dice (svref (world-dice-set (the world (robot-world robot)))
-                   (+ (robot-dice-base robot) (dice-index purpose)))))
+  (dice-at (robot-world robot) (robot-dice-base robot) purpose))
 
-(defun arrange-dice (world names)
-  (unless (equal names (world-dice-names world)) (give-dice world names))
-  (dolist (robot (world-robots world))
-    (setf (robot-dice-base robot) (if names (position-of-dice (robot-full-name robot) names) 0)
-          (robot-key robot) (text-hash (robot-full-name robot)))))
+(defun arrange-dice (world robots)
+  "Give each of ROBOTS, which are sorted, its own dice in WORLD if there are several."
+  (let ((names (mapcar #'robot-full-name robots)) (several-p (rest robots)))
+    (unless (equal (and several-p names) (world-dice-names world))
+      (give-dice world (and several-p names)))
+    (loop for robot in robots
+          for name in names
+          for base from (length +dice-purposes+) by (length +dice-purposes+)
+          do (setf (robot-dice-base robot) (if several-p base 0)
+                   (robot-key robot) (ldb (byte 62 0) (text-hash name))))))
 
 ;;; Bodies.
 
@@ -109,7 +121,9 @@ away. Call this function whenever robots have joined or left WORLD, and after a 
   (setf (world-roster world) '())
   (let* ((several-p (rest (world-robots world)))
          (robots (robots-in-order world)))
-    (arrange-dice world (and several-p (mapcar #'robot-full-name robots)))
+    (arrange-dice world robots)
+    (when (and (world-timeline world) (not several-p))
+      (setf (agenda-salt (timeline-agenda (world-timeline world))) nil))
     (if (and several-p (not (world-ghosts-p world)))
         (dolist (robot robots) (unless (robot-body robot) (give-body robot)))
         (mapc #'take-body robots))))
@@ -139,7 +153,5 @@ so; else NIL."
 (defmethod resource-key ((mind mind)) (robot-key (mind-robot mind)))
 
 (defun turn-salt (world tick)
-  "Return a number that determines the order of the robots of WORLD in TICK, or NIL if there are
-fewer than two robots."
-  (and (world-dice-names world)
-       (mixed-word (world-seed world) tick)))
+  "Return a number that determines the order of the robots of WORLD in TICK."
+  (mixed-word (world-seed world) tick))

@@ -67,14 +67,31 @@ NIL; and whether the obstacle is in another column."
       (run-early agenda event)
       t)))
 
+(declaim (inline carry-body))
+(defun carry-body (robot)
+  "Move the body of ROBOT, if it has one, to the position of ROBOT."
+  (let ((body (robot-body robot)))
+    (when body (move-body body (robot-x robot) (robot-y robot)))))
+
 (defun let-others-go-first (robot x y)
-  "Let robots in the cell of (X,Y), which bar the way of ROBOT, drive now if they have yet to drive
-in this tick. Return true if there were any."
-  (let* ((world (robot-world robot)) (index (map-index (world-map world) x y)) (bodies '()))
-    (when (and index (robot-body robot))
+  "Let robots in the cell that holds (X,Y), which bar the way of ROBOT, drive now if they have yet
+to drive in this tick. Return true if there were any. ROBOT must then look for its way again."
+  (let* ((world (robot-world robot)) (index (map-index (world-map world) x y)) (robots '()))
+    (when index
       (do-cell-bodies (body index world)
-        (when (thing-obsmove-p body) (push (body-robot body) bodies)))
-      (some #'identity (mapcar #'drive-early (nreverse bodies))))))
+        (when (thing-obsmove-p body) (push (body-robot body) robots)))
+      ;; ROBOT may have passed a corner already.
+      (when robots (carry-body robot))
+      (some #'identity (mapcar #'drive-early (nreverse robots))))))
+
+(defun let-others-leave-corner (robot x y column row)
+  "If ROBOT, in the cell at COLUMN and ROW, could pass a corner at (X,Y) but for robots in the cell
+beyond, call LET-OTHERS-GO-FIRST for these and return its value."
+  (let ((world (robot-world robot)))
+    (multiple-value-bind (beyond-x beyond-y) (point-beyond-corner world +blocking+ x y column row)
+      (and beyond-x
+           (blocked-cell-p world beyond-x beyond-y +blocking+)
+           (let-others-go-first robot beyond-x beyond-y)))))
 
 (defun robot-in-way (robot)
   "Return the robot whose body is in a cell that ROBOT touches ahead, and blocks ROBOT; or NIL."
@@ -92,8 +109,6 @@ in this tick. Return true if there were any."
 the corner. Return true if ROBOT moved."
   (let ((world (robot-world robot)))
     (multiple-value-bind (beyond-x beyond-y) (point-beyond-corner world +blocking+ x y column row)
-      (when (and beyond-x (blocked-cell-p world beyond-x beyond-y +blocking+))
-        (let-others-go-first robot beyond-x beyond-y))
       (unless (or (null beyond-x)
                   (blocked-cell-p world beyond-x beyond-y +blocking+))
         (setf (robot-x robot) beyond-x
@@ -135,21 +150,23 @@ metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL."
   "ROBOT has moved MOVED metres and has LEFT to go. Stop ROBOT before the obstacle BLOCK, which is
 in the next column if SIDEWAYS, else in the next row. If ROBOT only touches the obstacle, continue.
 Return the obstacle that stops ROBOT, or NIL."
-  (let ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved))))
+  (let* ((x (+ (robot-x robot) (* dx moved))) (y (+ (robot-y robot) (* dy moved)))
+         (crosses (if sideways
+                      (may-cross-border-p y cell-y dy left)
+                      (may-cross-border-p x cell-x dx left))))
     (cond ((only-touches-p (if sideways dx dy) left)
            (move-within-cell robot dx dy moved cell-x cell-y)
            (if sideways
                (continue-move robot 0d0 dy left moved)
                (continue-move robot dx 0d0 left moved)))
-          ((and (eq block :thing)
-                (let-others-go-first robot
-                  (+ 0.5d0 cell-x (if sideways (signum dx) 0))
-                  (+ 0.5d0 cell-y (if sideways 0 (signum dy)))))
+          ((and (robot-body robot)
+                (or (and (eq block :thing)
+                         (let-others-go-first robot
+                           (+ 0.5d0 cell-x (if sideways (signum dx) 0))
+                           (+ 0.5d0 cell-y (if sideways 0 (signum dy)))))
+                    (and crosses (let-others-leave-corner robot x y cell-x cell-y))))
            (continue-move robot dx dy (+ moved left) 0d0))
-          ((and (if sideways
-                    (may-cross-border-p y cell-y dy left)
-                    (may-cross-border-p x cell-x dx left))
-                (pass-corner robot x y cell-x cell-y))
+          ((and crosses (pass-corner robot x y cell-x cell-y))
            (continue-move robot dx dy left moved))
           (t (move-within-cell robot dx dy (max 0d0 (- moved +contact-gap+)) cell-x cell-y)
              block))))
@@ -211,12 +228,6 @@ robot can drive along the border of two cells and stay in one cell."
           (robot-cos robot) (snap-heading-component (cosine angle))
           (robot-sin robot) (snap-heading-component (sine angle))))
   robot)
-
-(declaim (inline carry-body))
-(defun carry-body (robot)
-  "Move the body of ROBOT, if it has one, to the position of ROBOT."
-  (let ((body (robot-body robot)))
-    (when body (move-body body (robot-x robot) (robot-y robot)))))
 
 (defun set-robot-pose (robot x y &optional (angle (robot-angle robot)))
   "Put ROBOT at (X,Y), in metres, heading ANGLE, at once; its odometers do not change."
@@ -293,15 +304,16 @@ uniformly distributed within MOTION-NOISE* of the speed; the odometers read an i
 contains the distance (reading 96)."
   (declare #.*hot* (type robot robot) (type double-float limit))
   (let* ((world (robot-world robot))
+         (base (robot-dice-base robot))
          (step (tick-distance robot))
          (nominal (max (- step) (min limit step)))
          (noise (noise-of-step motion-noise* (abs nominal) (robot-speed-now robot)))
-         (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (robot-dice robot :motion)))
+         (distance (* nominal (+ 1d0 (* noise (- (* 2d0 (roll (dice-at world base :motion)))
                                                  1d0)))))
          (block (move-along-heading robot distance))
          (moved (abs (robot-moved robot)))
          (expected (if block moved (abs nominal)))
-         (dice (robot-dice robot :odometry))
+         (dice (dice-at world base :odometry))
          (low (- moved (* (roll dice) (max 0d0 (- moved (* expected (- 1d0 noise)))))))
          (high (+ moved (* (roll dice) (max 0d0 (- (* expected (+ 1d0 noise)) moved))))))
     (declare (type double-float noise step nominal distance moved expected low high))

@@ -6,7 +6,7 @@
           participant-at-work-p participant-reseed participant-digest participant-copy
           participant-end participant-clock-stopped participant-unfinished participant-cut-off
           participant-around-p participant-at-rest check-forkable call-as-participant-makes-way
-          participant-place))
+          participant-place participant-robot))
 
 ;;; A participant reacts to a run, by requests only. It may keep an idle run ticking, may have its
 ;;; own dice, and is told when the run ends. Its requests are in the journal, so a run is repeated
@@ -28,6 +28,11 @@
 (define-participant-function participant-after-ticks (participant simulation)
   "Let PARTICIPANT act when RUN-TICKS or RUN-UNTIL has passed ticks of the headless SIMULATION."
   (values))
+
+(define-participant-function participant-robot (participant)
+  "Return the robot that PARTICIPANT commands, or NIL. In a tick, participants react in the order of
+their robots' turns."
+  nil)
 
 (define-participant-function participant-origin (participant)
   "Return the name of PARTICIPANT for messages and restarts, in the form that CALL-USER-CODE takes."

@@ -283,7 +283,7 @@ the next tick. Runs in the modes :FREE and :CHARGED are the same on every machin
   "End the run of SIMULATION, for REASON, a sentence without its full stop. Requests to its robots,
 in progress or waiting, are interrupted; further requests are refused."
   (let ((timeline (simulation-timeline simulation))
-        (robots (simulation-robots simulation)))
+        (robots (robots-in-order (simulation-world simulation))))
     (call-without-clock
      timeline
      (lambda ()

@@ -25,8 +25,11 @@ begun; skip the phases up to this number. PLACE is 0 before the first phase and 
   "Allow this thread to change WORLD in a tick of TIMELINE."
   (setf (timeline-ticking-p timeline) t
         (timeline-moments timeline) 0
-        (agenda-salt (timeline-agenda timeline)) (turn-salt world (1+ (timeline-tick timeline)))
         (world-writer world) (current-thread))
+  (when (or (world-dice-names world) (agenda-salt (timeline-agenda timeline)))
+    (setf (agenda-salt (timeline-agenda timeline))
+          (and (world-dice-names world)
+               (turn-salt world (1+ (timeline-tick timeline))))))
   (begin-tick-dice (timeline-tick-dice timeline) (world-seed world) (timeline-tick timeline)))
 
 (defun end-world-changes (timeline world)
@@ -93,13 +96,22 @@ recorded at the same point of the new journal."
     (call-each (lambda (observer) (call-user-code observer "an observer" simulation))
                (simulation-observers simulation))))
 
+(defun participants-in-order (simulation)
+  "Return the participants of SIMULATION in the order in which they react to this tick: the turns of
+their robots if there are several robots, else the order in which they joined."
+  (let ((participants (simulation-participants simulation))
+        (salt (agenda-salt (simulation-agenda simulation))))
+    (if (and salt (rest participants))
+        (sorted-by-turn participants #'participant-robot salt)
+        participants)))
+
 (defun let-participants-act (simulation)
   (let ((*tick-dice* nil))
     (flet ((act (participant)
              (call-user-code #'participant-after-tick (participant-origin participant)
                              participant simulation)))
       (declare (dynamic-extent #'act))
-      (call-each #'act (simulation-participants simulation)))))
+      (call-each #'act (participants-in-order simulation)))))
 
 (declaim (inline keep-fork-if-due))
 (defun keep-fork-if-due (simulation)

@@ -212,13 +212,11 @@ first; in each group, the oldest comes first."
 (defun notifications-in-order (notifications salt)
   "Return NOTIFICATIONS, the newest first, in the order in which they are made: the oldest first or,
 if there are several robots, by the turns of the robots in the tick with SALT."
-  (flet ((turn (notification)
+  (flet ((resource (notification)
            (let ((event (second notification)))
-             (if (typep event 'event)
-                 (turn-of-resource (event-resource event) salt)
-                 0))))
+             (and (typep event 'event) (event-resource event)))))
     (if (and salt (rest notifications))
-        (stable-sort (reverse notifications) #'< :key #'turn)
+        (sorted-by-turn (reverse notifications) #'resource salt)
         (reverse notifications))))
 
 (defun next-notification (timeline)

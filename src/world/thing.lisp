@@ -4,8 +4,7 @@
 
 (export '(location-contents location-position location-world location-closed-p location-full-p
           location-name location-phrase thing body-robot robot-body-p thing-holders-text
-          similar-domain-value
-          warn-of-unknown-substance))
+          similar-domain-value warn-of-unknown-substance))
 
 ;;; The location of a thing is :FLOOR (then it has a position), or its holder, a thing or, in the
 ;;; layer above, a hand or storage bin, or NIL, as for prototypes and destroyed things. Holders
@@ -105,7 +104,7 @@ the sizes of the things directly in it (a double-float, at least 0). Signals WRO
    (capacity 0d0 double-float "the thing's :capacity, 0 if it is no container" :addition)
    (substance-parameter 0d0 double-float
                         "the parameter of the thing's :substance, 0 if unspecified" :addition)
-   (rank 0 fixnum "the index of the thing in the vector of its world's things" :near :export)))
+   (rank 0 fixnum "the index of the thing in the vector of its world's things" :near)))
 
 ;; Its position follows the robot's. Serial 0 in a world: bodies are not numbered.
 (addition body body-p)

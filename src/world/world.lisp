@@ -3,8 +3,7 @@
 (in-package :ars-magna.world)
 
 (export '(world stock do-cell-things world-rank-count thing-of-rank random-thing do-things
-          change-world changing
-          give-dice position-of-dice dice-index
+          change-world changing give-dice position-of-dice dice-index +dice-purposes+
           permitting-changes first-warning-for-key-p warning-given-p record-progress-checked
           progress-checked-p warn-once warn-of-angle-in-degrees))
 
@@ -81,14 +80,16 @@ full name of a robot."
 
 (defun give-dice (world names)
   "Give each of NAMES, full names of robots, its own dice in WORLD. Names that have dice keep them."
-  (let ((old (world-dice-set world)) (old-names (world-dice-names world))
-        (new (make-dice-set (world-seed world) names)))
-    (replace new old :end1 (length +dice-purposes+))
-    (dolist (name (intersection names old-names :test #'string=))
-      (let ((start (position-of-dice name old-names)))
-        (replace new old :start1 (position-of-dice name names)
-                         :start2 start :end2 (+ start (length +dice-purposes+)))))
-    (setf (world-dice-set world) new
+  (let ((count (length +dice-purposes+)) (known (make-hash-table :test 'equal))
+        (set (world-dice-set world)))
+    (loop for name in (world-dice-names world)
+          for start from count by count
+          do (setf (gethash name known) (subseq set start (+ start count))))
+    (setf (world-dice-set world)
+          (apply #'concatenate 'simple-vector (subseq set 0 count)
+                 (loop for name in names
+                       collect (or (gethash name known)
+                                   (make-dice-of-robot (world-seed world) name))))
           (world-dice-names world) names)))
 
 (declaim (inline dice-index world-dice))

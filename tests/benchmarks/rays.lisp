@@ -35,20 +35,38 @@
        (robot:look-for-things (robot:robot-camera robot 0) :non-local '((:color green)))))
    simulation))
 
-(defun measure-looking (name robot-name world-things near-things robots ticks)
+(defun define-lookers (count)
+  "Define COUNT robots in free cells of a room, two cells apart. Return their names."
+  (loop with map = (world:find-map 'benchmark-room)
+        with places = (loop for y from 20.5d0 below 60 by 3
+                            append (loop for x from 15.5d0 below 60 by 3
+                                         unless (world:wall-at-p map x y) collect (list x y)))
+        for number below count
+        for name = (intern (format nil "LOOKER-~D" number) :ars-magna.benchmarks)
+        do (robot:define-robot name 'benchmark-room (pop places) 0
+             :cameras (list (list (/ pi 2) 50)))
+        collect name))
+
+(defun be-ghosts (world)
+  (setf (world:world-ghosts-p world) t)
+  (robot:arrange-robots world))
+
+(defun measure-looking (name robot-names world-things near-things ticks &key ghosts)
   (run:call-with-simulation
    (lambda ()
      (let* ((dice (base:make-dice 7)) (world world:*world*)
             (robot (first (world:world-robots world))))
+       (when ghosts (be-ghosts world))
        (strew world near-things dice (floor (+ 2 (robot:robot-x robot)))
               (- (floor (robot:robot-y robot)) 2) 5)
        (strew world world-things dice 0 600 400)
-       (loop repeat (1- robots) do (robot::make-robot (robot:robot-blueprint robot) world))
        (look-each-tick (world:world-robots world) (time:current-simulation))
        (say name (per-second ticks (lambda () (run:run-ticks ticks)) :runs 3) "ticks/s")))
-   (list robot-name) :seed 1))
+   robot-names :seed 1))
 
-(measure-looking "one robot looks each tick, 75 x 75, 10 in view" 'looker 0 10 1 50000)
-(measure-looking "one robot looks each tick, rooms, 10 in view" 'roomer 0 10 1 50000)
-(measure-looking "  the same with 100,000 more things in the world" 'roomer 100000 10 1 50000)
-(measure-looking "100 robots look each tick, 75 x 75, 10 in view" 'looker 0 10 100 500)
+(measure-looking "one robot looks each tick, 75 x 75, 10 in view" '(looker) 0 10 50000)
+(measure-looking "one robot looks each tick, rooms, 10 in view" '(roomer) 0 10 50000)
+(measure-looking "  the same with 100,000 more things in the world" '(roomer) 100000 10 50000)
+(let ((lookers (define-lookers 100)))
+  (measure-looking "100 robots look each tick, 75 x 75, ghosts" lookers 0 10 500 :ghosts t)
+  (measure-looking "100 robots look each tick, 75 x 75, with bodies" lookers 0 10 500))
