@@ -80,9 +80,7 @@ Errors of FUNCTION are signalled after the replay."
 
 (defun title-of-journal (journal)
   (let ((header (journal-header journal)))
-    (robots-and-map-title (mapcar (lambda (robot)
-                                    (drawn-name (blueprint-name (find-blueprint robot))))
-                                  (getf header :robots))
+    (robots-and-map-title (mapcar #'drawn-name (journal-robot-names journal))
                           (map-name (find-map (getf header :map))))))
 
 (defun title-with-remark (title journal anyway)

@@ -92,6 +92,7 @@ waiting; and the tick at which a plan diverged while the past was repeated, or N
          (run (await-fork (fork-record-fork kept) nil '()))
          (acts (reverse (ldiff (append asked (past-acts past)) (fork-record-acts kept))))
          (done-p nil))
+    (bind-joining-robots run (append asked acts))
     (unwind-protect
          (let ((diverged (call-in-simulation run (lambda () (repeat-acts run acts tick)))))
            (setf (simulation-past run) past
@@ -126,7 +127,7 @@ it: the binding, the global value or both."
   (let ((world (simulation-world new)))
     (setf (map-resident (world-map world)) world)
     (dolist (robot (world-robots world))
-      (bind-robot-name (robot-blueprint robot) robot))))
+      (bind-robot-name robot))))
 
 (defun hand-over-observers (new old)
   "Make NEW the successor of OLD, and give NEW the observers, gate and messages of OLD."

@@ -108,7 +108,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
 
 (defun trajectory-row (robot tick)
   (printing-plainly ()
-    (append (list (full-number-text tick) (string-downcase (robot-name robot)))
+    (append (list (full-number-text tick) (string-downcase (robot-label robot)))
             (mapcar #'full-number-text
                     (list* (robot-x robot) (robot-y robot) (robot-angle robot)
                            (multiple-value-list (odometer-estimate (robot-main-odometer robot)))))
@@ -119,7 +119,9 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
 (defun write-robot-rows (simulation names out)
   "Write a row to OUT for each robot of SIMULATION; unless NAMES is NIL, only for the robots NAMES."
   (dolist (robot (simulation-robots simulation))
-    (when (or (null names) (member (robot-name robot) names :test #'same-name-p))
+    (when (or (null names)
+              (member (robot-name robot) names :test #'same-name-p)
+              (member (robot-full-name robot) names :test #'same-name-p))
       (write-string (csv-line (trajectory-row robot (simulation-tick simulation))) out))))
 
 (defun write-trajectory (journal out every until names)
@@ -137,10 +139,10 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
   (check-argument save-trajectory every (whole-p every 1)
                   "a whole number of ticks, from 1 to 1e9")
   (checked-end-tick 'save-trajectory journal until)
-  (let ((known (mapcar (lambda (robot) (blueprint-name (find-blueprint robot)))
-                       (getf (journal-header journal) :robots))))
+  (let ((known (journal-robot-names journal)))
     (dolist (name robots)
-      (unless (member name known :test #'same-name-p)
+      (unless (or (member name known :test #'same-name-p)
+                  (member name (mapcar #'qualified-name known) :test #'same-name-p))
         (reject-name "robot in the run of the journal" name known)))))
 
 (addition save-trajectory)
