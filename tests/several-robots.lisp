@@ -8,7 +8,7 @@
 (defpackage :pb (:use))
 
 (world:defmap paddock (30 20)
-  (world:rect (0 0) (29 19) 'wall 10))
+  (rect (0 0) (29 19) bricks 10))
 
 (robot:defrobot colt (paddock (5 5) 0) :cameras ((3 10)) :hands (10))
 (robot:defrobot mare (paddock (5 9) 0) :cameras ((3 10)))
@@ -59,7 +59,7 @@
       (is (eq colt-2 (robot:find-robot "colt-2")))
       (is (eq 'colt-2 (getf (run:status 'colt-2) :robot)))
       (command:robot-go-forward colt-2 3)
-      (run:run-ticks 10)
+      (run:run-ticks 20)
       (is (= 6 (robot:robot-x colt-2))))
     (is (null (robot:find-robot 'colt-2 nil)))))
 
@@ -110,10 +110,10 @@
   (eval '(experiment:defexperiment herds
           (:robots colt (colt :as colt-2 :at (20 (+ 2 3))))
           (:clean)
-          (:run (command:robot-go-forward colt-2 3) (run:run-ticks 10) t)
+          (:run (command:robot-go-forward colt-2 3) (run:run-ticks 20) t)
           (:measure (x (robot:robot-x colt-2)))))
   (is (equal '("23" "23")
-             (mapcar (lambda (result) (first (experiment:result-measures result)))
+             (mapcar (lambda (result) (first (experiment::result-measures result)))
                      (experiment:run-experiment 'herds :trials 2 :stream nil))))
   (is-true (has-words-p (refused-text (eval '(experiment:defexperiment herds
                                          (:robots colt (colt :as colt-2))
@@ -187,7 +187,7 @@
            (destructuring-bind (one other) (run:simulation-robots)
              (command:robot-go-forward one 12)
              (command:robot-go-forward other 12)
-             (run:run-ticks 30)
+             (run:run-ticks 60)
              (list (robot:robot-x one) (robot:robot-x other)
                    (= (run:state-digest)
                       (nth-value 1 (run:replay
@@ -234,10 +234,10 @@
     (eval `(experiment:defexperiment spirits
              (:robots colt (colt :as colt-2 :at (9 5)))
              (:clean) ,clause
-             (:run (command:robot-go-forward colt 10) (run:run-ticks 20) t)
+             (:run (command:robot-go-forward colt 10) (run:run-ticks 40) t)
              (:measure (x (robot:robot-x colt)))))
     (is (eq (equal clause '(:ghosts))
-            (string= "15" (first (experiment:result-measures
+            (string= "15" (first (experiment::result-measures
                                   (first (experiment:run-experiment 'spirits :trials 1
                                                                              :stream nil)))))))))
 
@@ -290,8 +290,8 @@
           (:vary (:robots 'pa::scout 'pb::scout 'colt))
           (:run (run:run-ticks 1) t)))
   (is (equal '("robots=PA::SCOUT" "robots=PB::SCOUT" "robots=colt")
-             (mapcar #'experiment:condition-name
-                     (experiment:experiment-conditions (experiment:find-experiment 'scouts)))))
+             (mapcar #'experiment::condition-name
+                     (experiment::experiment-conditions (experiment::find-experiment 'scouts)))))
   (with-temporary-file (file)
     (uiop:delete-file-if-exists file)
     (run:with-simulation ((pa::scout pb::scout) :journal t)

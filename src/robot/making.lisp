@@ -155,8 +155,9 @@ or :LEFT, and the robot.")
         (arrange-robots world)
         (call-listeners *robot-hooks* :left robot)))))
 
-(defun remove-robots-named (name reason)
-  (dolist (world (remove nil (mapcar #'map-resident (all-maps))))
+(defun remove-robots-named (name reason &optional except)
+  "Remove the robots called NAME from all resident worlds except the world EXCEPT, for REASON."
+  (dolist (world (remove except (remove nil (mapcar #'map-resident (all-maps)))))
     (dolist (robot (remove name (world-robots world) :key #'robot-name :test-not #'eq))
       (asking ((ensure-timeline world)) (remove-robot robot reason)))))
 
@@ -173,11 +174,36 @@ or :LEFT, and the robot.")
              (and (eq blueprint (robot-blueprint robot)) (null (robot-retired robot))))
            (world-robots world)))
 
+;; Loading a file again defines the robot in the way anew, too, so it will be elsewhere.
+(defun robot-in-the-way (blueprint world)
+  "Return a robot that is in the cell of WORLD where BLUEPRINT starts and will stay there, or NIL."
+  (flet ((cell (x y) (map-index (world-map world) x y)))
+    (find-if (lambda (robot)
+               (and (= (cell (robot-x robot) (robot-y robot))
+                       (cell (blueprint-x blueprint) (blueprint-y blueprint)))
+                    (not (eq (robot-name robot) (blueprint-name blueprint)))
+                    (not (defined-in-this-file-p (robot-name robot) *robots*))))
+             (world-robots world))))
+
+(defun check-start-free (blueprint world)
+  "Signal MISUSE if the run of WORLD has begun and another robot is where BLUEPRINT starts."
+  (let ((other (and (plusp (world-tick world))
+                    (not (world-ghosts-p world))
+                    (robot-in-the-way blueprint world))))
+    (when other
+      (reject-use "defrobot ~(~A~): the run of ~(~A~) is at tick ~D, and ~A is in the cell of ~A. ~
+                   Choose another position, or drive ~A away first."
+                  (blueprint-name blueprint) (map-name (world-map world)) (world-tick world)
+                  (robot-label other)
+                  (point-text (blueprint-x blueprint) (blueprint-y blueprint))
+                  (robot-label other)))))
+
 (defun ensure-robot-in (world blueprint)
   "Return the robot in WORLD that was made from BLUEPRINT, or make it. Remove other robots of the
 same name. The calling thread must own WORLD."
   (or (find-robot-from-blueprint blueprint world)
       (progn
+        (check-start-free blueprint world)
         (dolist (robot (world-robots world))
           (when (eq (robot-name robot) (blueprint-name blueprint))
             (remove-robot robot "it has been defined anew")))
@@ -189,21 +215,6 @@ same name. The calling thread must own WORLD."
     (and (eq world (map-resident map))
          (eq map (find-map (map-name map) nil)))))
 
-;; Loading a file again defines the robot in the way anew, too, so it will be elsewhere.
-(defun check-start-free (blueprint world)
-  "Signal MISUSE if the run of WORLD has begun and another robot is where BLUEPRINT starts."
-  (let ((x (blueprint-x blueprint)) (y (blueprint-y blueprint)) (name (blueprint-name blueprint)))
-    (do-cell-bodies (body (map-index (world-map world) x y) world)
-      (let ((other (robot-name (body-robot body))))
-        (unless (or (zerop (world-tick world))
-                    (eq name other)
-                    (defined-in-this-file-p other *robots*))
-          (reject-use "defrobot ~(~A~): a run of ~(~A~) is at tick ~D, and ~A. Choose another ~
-                       position, drive that robot away first, or define ~(~A~) before the ~
-                       run begins."
-                      name (map-name (world-map world)) (world-tick world)
-                      (occupant-text world x y) name))))))
-
 ;; Another thread may do the same meanwhile: the thread that owns the world decides. If the world
 ;; has been replaced, repeat this for the new one.
 (defun ensure-resident-robot (blueprint)
@@ -214,7 +225,7 @@ earlier definitions of the same name. Return the robot, or the robot that is alr
       (check-start blueprint (world-map world))
       (unless (find-robot-from-blueprint blueprint world)
         (check-start-free blueprint world)
-        (remove-robots-named (blueprint-name blueprint) "it has been defined anew"))
+        (remove-robots-named (blueprint-name blueprint) "it has been defined anew" world))
       (asking ((ensure-timeline world))
         (when (current-resident-world-p world) (setf robot (ensure-robot-in world blueprint))))
       (when robot (return robot)))))

@@ -38,9 +38,12 @@ begins now."
   (let ((journal (simulation-journal simulation)))
     (if (null (journal-newest-first journal))
         (refresh-journal-robots simulation)
-        (setf (journal-header journal)
-              (append (uiop:remove-plist-key :ghosts (journal-header journal))
-                      (list :ghosts (world-ghosts-p (simulation-world simulation))))))))
+        (let ((header (uiop:remove-plist-key :ghosts (journal-header journal)))
+              (ghosts-p (world-ghosts-p (simulation-world simulation))))
+          (setf (journal-header journal)
+                (append header
+                        (and (or ghosts-p (rest (getf header :robots)))
+                             (list :ghosts ghosts-p))))))))
 
 ;;; Reading.
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(parse-robots robot-list-form literal-robots-form names-in-robots))
+(export '(parse-robots literal-robots-form names-in-robots))
 
 ;;; A list of robots has names, robots, and entries (NAME :as OTHER-NAME :at (x y) :angle a): another
 ;;; robot of the kind NAME, or NAME at another start. A literal list in a macro has unevaluated names
@@ -108,7 +108,7 @@ and start are those of BLUEPRINT."
 (defun parse-robots (robots &optional (operator 'with-simulation))
   "Return a list of ROBOT-ENTRIES for ROBOTS: a robot, a name, an entry (name :as ...), or a list of
 these. Errors name OPERATOR."
-  (unless (listp (if (consp robots) (rest robots) robots))
+  (unless (or (atom robots) (proper-list-p robots))
     (reject-entry operator robots "it is a dotted list"))
   (let ((entries (mapcar (lambda (robot) (parse-robot operator robot))
                          (if (entry-form-p robots) (list robots) (ensure-list robots)))))
@@ -178,8 +178,9 @@ these. Errors name OPERATOR."
 
 (defun option-value-form (key form environment)
   (cond ((eq :at key) (position-form form environment))
-        ((and (eq :as key) (or (symbolp form) (eq 'quote (first form)))) `',(strip-quote form))
-        (t form)))
+        ((and (eq :as key) (consp form) (not (eq 'quote (first form)))) form)
+        ((eq :angle key) form)
+        (t `',(strip-quote form))))
 
 (defun element-form (element environment)
   (if (and (literal-entry-p element environment) (oddp (length element)))
