@@ -174,7 +174,10 @@ or :LEFT, and the robot.")
              (and (eq blueprint (robot-blueprint robot)) (null (robot-retired robot))))
            (world-robots world)))
 
-;; Loading a file again defines the robot in the way anew, too, so it will be elsewhere.
+;; When a file is loaded again, it defines the robot in the way anew, too.
+(defun loaded-again-together-p (name other)
+  (and (defined-in-this-file-p name *robots*) (defined-in-this-file-p other *robots*)))
+
 (defun robot-in-the-way (blueprint world)
   "Return a robot that is in the cell of WORLD where BLUEPRINT starts and will stay there, or NIL."
   (flet ((cell (x y) (map-index (world-map world) x y)))
@@ -182,7 +185,8 @@ or :LEFT, and the robot.")
                (and (= (cell (robot-x robot) (robot-y robot))
                        (cell (blueprint-x blueprint) (blueprint-y blueprint)))
                     (not (eq (robot-name robot) (blueprint-name blueprint)))
-                    (not (defined-in-this-file-p (robot-name robot) *robots*))))
+                    (not (loaded-again-together-p (blueprint-name blueprint)
+                                                  (robot-name robot)))))
              (world-robots world))))
 
 (defun check-start-free (blueprint world)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(parse-robots literal-robots-form names-in-robots))
+(export '(parse-robots check-entries-apart literal-robots-form names-in-robots))
 
 ;;; A list of robots has names, robots, and entries (NAME :as OTHER-NAME :at (x y) :angle a): another
 ;;; robot of the kind NAME, or NAME at another start. A literal list in a macro has unevaluated names

@@ -158,17 +158,25 @@ deadlock. The documentation of RUN-EXPERIMENT says what is kept."
   "Return VALUE, a robot or a list of robots, as a list."
   (if (typep value '(cons t (cons keyword))) (list value) (ensure-list value)))
 
-(defun check-robot-list (definition part robots)
-  "Signal MALFORMED-DEFINITION unless ROBOTS is a valid list of robots for a simulation."
-  (handler-case (parse-robots robots)
+(defun call-rejecting-robots (function definition part)
+  "Call FUNCTION, which checks a list of robots. Report its errors as MALFORMED-DEFINITION."
+  (handler-case (funcall function)
     (ars-magna-error (trouble)
       (reject-clause definition part
                      (format nil "robots such as ann or (ann :as bob :at (3 4)); ~A"
                              (string-right-trim "." (one-line-text trouble)))))))
 
+(defun check-robots-apart-in-conditions (definition experiment)
+  "Signal MALFORMED-DEFINITION if robots of a condition of EXPERIMENT start in one cell."
+  (unless (experiment-ghosts experiment)
+    (dolist (condition (experiment-conditions experiment))
+      (let ((robots (condition-robots condition)))
+        (call-rejecting-robots (lambda () (check-entries-apart definition (parse-robots robots)))
+                               definition (list* :robots robots))))))
+
 (defun check-robots (definition part robots)
   (check-robot-names definition part (mapcar #'kind-in-entry robots))
-  (when robots (check-robot-list definition part robots)))
+  (when robots (call-rejecting-robots (lambda () (parse-robots robots)) definition part)))
 
 (defun kind-in-entry (robot)
   "Return the name of the kind of ROBOT, a name or an entry (name :as ...)."
@@ -271,6 +279,7 @@ other slots of an experiment."
          (*robots-compared* (names-in-value (robot-values experiment))))
     (setf (experiment-conditions experiment)
           (call-with-trial-syntax (lambda () (all-conditions experiment clean settings))))
+    (check-robots-apart-in-conditions definition experiment)
     (check-conditions-differ definition
                              (if factors
                                  (list* :vary (mapcar #'first factors))
