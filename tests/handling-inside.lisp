@@ -108,7 +108,7 @@
                        (texts))))))))
 
 (test hand-insert.a-stranger's-designator-or-bin
-  (run:with-simulation ((cook rover-in-kitchen) :clean t)
+  (run:with-simulation ((cook rover-in-kitchen) :clean t :ghosts t)
     (let ((other (robot:find-robot 'rover-in-kitchen)))
       (is (eq :bad-designator
               (code-of 'command:hand-insert (robot:robot-hand other 0) (designate 'hamper))))

@@ -25,7 +25,7 @@
 
 (robot:defrobot keeper (zoo (3.5 3.5) 0)
   :cameras (((/ pi 2) 3) ((* 2 pi) 5)) :hands (10 4) :bins (20 5))
-(robot:defrobot helper (zoo (3.3 3.3) 1)
+(robot:defrobot helper (zoo (2.5 3.5) 1)
   :cameras (((* 2 pi) 3)) :hands (6) :bins (8))
 
 ;;; Kickers. All they need comes from the world they run in.

@@ -11,7 +11,7 @@
      (eval '(robot:defrobot dog (pound (3 7) 0)))
      ,@body))
 
-(defun tick-now ()
+(defun herd-tick ()
   (run:simulation-tick time:*simulation*))
 
 (defun pass-ticks-now (count)
@@ -47,7 +47,7 @@
       (command:robot-turn (robot-called 'cat) 9)
       (command:robot-go-forward (robot-called 'dog) 9)
       (pass-ticks-now 4)
-      (let ((joined (tick-now)))
+      (let ((joined (herd-tick)))
         (eval '(robot:defrobot owl (pound (9 9) (/ pi 2))))
         (command:robot-go-forward (robot-called 'owl) 5)
         (pass-ticks-now 6)
@@ -130,24 +130,24 @@
 (test starts.in-one-cell-are-refused-by-simulator
   (with-pound
     (eval '(robot:defrobot owl (pound (3.5 3.5) 0)))
-    (is-true (has-words-p (refused-text (run:simulator 'cat :display nil))
+    (is-true (has-words-p (herd-refusal (run:simulator 'cat :display nil))
                           "CAT and OWL would start in one cell" ":ghosts t"))
     (with-stopped-run (cat :ghosts t)
       (is (null (robot:robot-body (robot-called 'cat)))))
     (run:with-simulation ((list 'owl))
       (is (= 3.5 (robot:robot-x (first (run:simulation-robots))))))
-    (is-true (has-words-p (refused-text (run:with-simulation ((list 'owl 'cat)))) "one cell"))))
+    (is-true (has-words-p (herd-refusal (run:with-simulation ((list 'owl 'cat)))) "one cell"))))
 
 (test starts.in-an-occupied-cell-of-a-run-are-refused
   (with-pound
     (with-stopped-run (cat)
       (pass-ticks-now 2)
       (robot:place-robot (robot-called 'cat) 12 12 0)
-      (is-true (has-words-p (refused-text (eval '(robot:defrobot owl (pound (12.5 12.5) 0))))
+      (is-true (has-words-p (herd-refusal (eval '(robot:defrobot owl (pound (12.5 12.5) 0))))
                             "defrobot owl" "CAT is in the cell of (12.5 12.5)"))
       (is (null (robot:find-robot 'owl nil)))
       (let ((*load-truename* nil) (*load-pathname* nil))
-        (is-true (has-words-p (refused-text (eval '(robot:defrobot dog (pound (12 12) 0))))
+        (is-true (has-words-p (herd-refusal (eval '(robot:defrobot dog (pound (12 12) 0))))
                               "CAT is in")))
       (is (eq (robot-called 'dog) (second (run:simulation-robots))) "the old robot is still there")
       (eval '(robot:defrobot cat (pound (12 12) 1)))
@@ -207,7 +207,7 @@
           (run:run-ticks 3)
           (funcall save file))
         (without-ghosts-mark file older)
-        (is-true (has-words-p (refused-text (if (eq save #'run:save-journal)
+        (is-true (has-words-p (herd-refusal (if (eq save #'run:save-journal)
                                            (run:load-journal older)
                                            (run:load-simulation older)))
                               "several robots" "version 1.10" "record the run anew"))))))

@@ -7,13 +7,13 @@
 (defpackage :pa (:use))
 (defpackage :pb (:use))
 
-(world:defmap paddock (30 20)
+(world:defmap corral (30 20)
   (rect (0 0) (29 19) bricks 10))
 
-(robot:defrobot colt (paddock (5 5) 0) :cameras ((3 10)) :hands (10))
-(robot:defrobot mare (paddock (5 9) 0) :cameras ((3 10)))
-(robot:defrobot pa::scout (paddock (10 5) 0))
-(robot:defrobot pb::scout (paddock (10 9) 0))
+(robot:defrobot colt (corral (5 5) 0) :cameras ((3 10)) :hands (10))
+(robot:defrobot mare (corral (5 9) 0) :cameras ((3 10)))
+(robot:defrobot pa::scout (corral (10 5) 0))
+(robot:defrobot pb::scout (corral (10 9) 0))
 
 (defun poses-of (robots)
   (loop for robot in robots
@@ -31,7 +31,7 @@
   (handler-case (progn (funcall function) nil)
     (base:ars-magna-error (trouble) (princ-to-string trouble))))
 
-(defmacro refused-text (&body body)
+(defmacro herd-refusal (&body body)
   "Return the text of the error in BODY, or NIL."
   `(text-of-error (lambda () ,@body)))
 
@@ -89,7 +89,8 @@
 
 (test list.with-a-mistake-is-refused
   (macrolet ((says (robots &rest words)
-               `(is-true (has-words-p (or (refused-text (run:with-simulation (,robots))) "") ,@words))))
+               `(is-true (has-words-p (or (herd-refusal (run:with-simulation (,robots))) "")
+                                      ,@words))))
     (says (colt colt) "twice" "(colt :as colt-2 :at (X Y))")
     (says (colt (colt :as colt)) "twice")
     (says (colt (colt :as colt-2)) "COLT and COLT-2 would start in one cell" ":ghosts t")
@@ -115,7 +116,7 @@
   (is (equal '(23 23) (mapcar #'round
                               (measured (experiment:run-experiment 'herds :trials 2 :stream nil)
                                         "x"))))
-  (is-true (has-words-p (refused-text (eval '(experiment:defexperiment herds
+  (is-true (has-words-p (herd-refusal (eval '(experiment:defexperiment herds
                                          (:robots colt (colt :as colt-2))
                                          (:run t))))
                         "(:ROBOTS" "one cell")))
@@ -243,7 +244,7 @@
 
 (test places.of-other-robots-are-refused
   (run:with-simulation ((colt mare))
-    (is-true (has-words-p (refused-text (robot:place-robot colt 5.2 9.3 0))
+    (is-true (has-words-p (herd-refusal (robot:place-robot colt 5.2 9.3 0))
                           "MARE is in the cell of (5.2 9.3)"))
     (robot:place-robot colt 5.3 5.3 2)
     (is (equal '((5.3d0 5.3d0 2d0)) (mapcar (lambda (place) (mapcar #'to-tenths place))
@@ -274,7 +275,7 @@
                        (0 command:robot-go-forward (:the :robot "PB::SCOUT") 5))
                      (subseq (run:journal-entries (run:simulation-journal time:*simulation*))
                              0 2)))
-          (is-true (has-words-p (refused-text (run:internalize '(:the :robot "SCOUT")
+          (is-true (has-words-p (herd-refusal (run:internalize '(:the :robot "SCOUT")
                                                           time:*simulation*))
                                 "PA::SCOUT" "PB::SCOUT" "full name")))
         (is (= digest (nth-value 1 (run:replay journal))))

@@ -55,7 +55,7 @@ function that returns a thing's list of entries, NAME one that returns an entry'
         when (and entry (users-entry-p entry)) collect name))
 
 (defun names-of-kinds (simulation)
-  "Return the names of the definitions that the robots in SIMULATION, now or earlier, were made from."
+  "Return the names of the definitions of the robots that are or were in SIMULATION."
   (remove-duplicates
    (append (loop for robot in (simulation-robots simulation)
                  collect (blueprint-name (robot-blueprint robot)))

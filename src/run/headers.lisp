@@ -5,8 +5,8 @@
 (export '(journal-robot-names remembered-robot-name))
 
 ;;; Robots are listed by full name. :STARTS lists the robots with another name or start than a
-;;; definition says, as (name kind x y angle). :GHOSTS says whether robots have bodies. A header with
-;;; one robot lacks :GHOSTS unless it is true: one robot has no body and uses the dice of the world.
+;;; definition says, as (name kind x y angle). :GHOSTS is true if robots have no bodies. A header
+;;; with one robot lacks :GHOSTS unless it is true: one robot has no body and uses the world's dice.
 
 (defun starts-for-header (simulation)
   (loop for robot in (simulation-robots simulation)

@@ -186,8 +186,9 @@ A world that has run before starts anew, with SEED if SEED is given. The run kee
 JOURNAL is NIL; use NIL for busy programs at the rate :FREE. If KEEP is true, the run keeps forks,
 so that it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see
 SET-THINKING: with :REAL, plans have a separate thread; otherwise plans react within the ticks. If
-GHOSTS is true, robots neither block nor see each other in this run. Return the robot (manual A). STOP-SIMULATOR stops the run. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
-MISUSE if the robot no longer fits into its map. See reading 238."
+GHOSTS is true, robots neither block nor see each other in this run. Return the robot (manual A).
+STOP-SIMULATOR stops the run. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the robot no
+longer fits into its map, or if two robots start in one cell. See reading 238."
   (check-options-of-simulator options)
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")

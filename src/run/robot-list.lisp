@@ -4,9 +4,9 @@
 
 (export '(parse-robots check-entries-apart literal-robots-form names-in-robots))
 
-;;; A list of robots has names, robots, and entries (NAME :as OTHER-NAME :at (x y) :angle a): another
-;;; robot of the kind NAME, or NAME at another start. A literal list in a macro has unevaluated names
-;;; and evaluated numbers; the value of any other form has symbols and numbers.
+;;; A list of robots has names, robots, and entries (NAME :as OTHER-NAME :at (x y) :angle a):
+;;; another robot of the kind NAME, or NAME at another start. A literal list in a macro has
+;;; unevaluated names and evaluated numbers; the value of any other form has symbols and numbers.
 
 (defstruct (robot-entry (:constructor make-robot-entry (blueprint name start)) (:copier nil))
   "A robot to be made from BLUEPRINT with NAME, a symbol. START is a list (x y angle), or () if NAME
@@ -38,7 +38,7 @@ and start are those of BLUEPRINT."
         when (member key others)
           do (reject-entry operator entry "~(~S~) is given twice" key)))
 
-(defun check-robot-entry-name (operator entry name)
+(defun check-entry-name (operator entry name)
   (unless (and name (symbolp name) (not (keywordp name)))
     (reject-entry operator entry ":as takes a symbol that can be a variable, not ~S" name))
   (let ((trouble (and (symbol-package name) (variable-name-trouble name))))
@@ -47,7 +47,7 @@ and start are those of BLUEPRINT."
                                     write :as my-~(~A~)"
                     name trouble name))))
 
-(defun check-robot-entry-start (operator entry map position angle)
+(defun check-entry-start (operator entry map position angle)
   (unless (and (proper-list-p position) (= 2 (length position)) (every #'sane-number-p position))
     (reject-entry operator entry ":at takes a position (x y), two numbers from -1e9 to 1e9"))
   (let ((trouble (apply #'start-problem-text map position)))
@@ -65,10 +65,10 @@ and start are those of BLUEPRINT."
   (check-entry-options operator entry)
   (destructuring-bind (head &key (as nil as-p) (at nil at-p) (angle nil angle-p)) entry
     (let* ((kind (parse-robot operator head)) (blueprint (robot-entry-blueprint kind)))
-      (when as-p (check-robot-entry-name operator entry as))
+      (when as-p (check-entry-name operator entry as))
       (destructuring-bind (x y own-angle) (robot-entry-start-pose kind)
         (let ((position (if at-p at (list x y))) (angle (if angle-p angle own-angle)))
-          (check-robot-entry-start operator entry (find-map (blueprint-map blueprint)) position angle)
+          (check-entry-start operator entry (find-map (blueprint-map blueprint)) position angle)
           (make-robot-entry blueprint (if as-p as (robot-entry-name kind))
                             (mapcar #'double (append position (list angle)))))))))
 
