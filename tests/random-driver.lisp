@@ -330,7 +330,10 @@ what has been seen."
         do (complain "~A was not answered" name)))
 
 (defun come-home (robot)
-  (robot:place-robot robot (+ 3.1 (* .8 (base:roll (ride-dice *ride*)))) 3.5 1))
+  "Put ROBOT into the cell with the things, or beside it if the other robot is there."
+  (let* ((x (+ 3.1 (* .8 (base:roll (ride-dice *ride*)))))
+         (taken-p (robot:occupant-text (robot:robot-world robot) x 3.5 robot)))
+    (robot:place-robot robot (if taken-p (1- x) x) 3.5 1)))
 
 (defun step-ride ()
   "Do one thing, and let some ticks pass, perhaps none."

@@ -122,10 +122,7 @@ begins now."
 
 (defun check-robots-of-header (header)
   "Signal an error if HEADER has several robots and is from a version in which they had no bodies."
-  (when (and (plist-p header)
-             (consp (getf header :robots))
-             (rest (getf header :robots))
-             (eq :none (getf header :ghosts :none)))
+  (when (and (rest (getf header :robots)) (eq :none (getf header :ghosts :none)))
     (error "it is a run of several robots that was recorded by version 1.10 or earlier. There, ~
             robots had no bodies and shared their dice, so the run would go another way now. ~
             Use that version, or record the run anew")))

@@ -157,9 +157,9 @@
   (unless (typep head '(cons (eql :ars-magna-journal) (cons t (cons t null))))
     (error "the file does not begin like a journal"))
   (check-file-format (second head) +journal-version+)
-  (check-robots-of-header (third head))
   (when (header-error-text (third head))
-    (error "the head makes no sense: ~A" (header-error-text (third head)))))
+    (error "the head makes no sense: ~A" (header-error-text (third head))))
+  (check-robots-of-header (third head)))
 
 (defun check-end (end entries)
   "Signal an error unless END is a valid last datum (:end tick) after ENTRIES."

@@ -15,11 +15,11 @@
   (unless (typep datum '(cons (eql :ars-magna-run) (cons t (cons t null))))
     (error "the file does not begin like a saved run"))
   (check-file-format (second datum) +saved-run-version+)
-  (check-robots-of-header (third datum))
   (let* ((head (third datum))
          (trouble (or (header-error-text (if (plist-p head) (list* :seed 0 head) head))
                       (saved-run-head-error-text head))))
-    (when trouble (error "the head makes no sense: ~A" trouble))))
+    (when trouble (error "the head makes no sense: ~A" trouble))
+    (check-robots-of-header head)))
 
 (defun saved-run-head-error-text (head)
   "Return a text about an error in HEAD that HEADER-ERROR-TEXT does not find, or NIL."
