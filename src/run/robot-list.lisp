@@ -132,6 +132,8 @@ these. Errors name OPERATOR."
              (setf (gethash index names) name))))
 
 (defun check-entries-apart (operator entries)
+  "Signal MISUSE, which names OPERATOR, if two robots of ENTRIES, from PARSE-ROBOTS, start in one
+cell."
   (check-robots-apart operator
                       (loop for entry in entries
                             collect (cons (robot-entry-name entry)
