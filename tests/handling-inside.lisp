@@ -108,7 +108,7 @@
                        (texts))))))))
 
 (test hand-insert.a-stranger's-designator-or-bin
-  (run:with-simulation ((cook rover-in-kitchen) :clean t)
+  (run:with-simulation ((cook rover-in-kitchen) :clean t :ghosts t)
     (let ((hand (robot:robot-hand (robot:find-robot 'rover-in-kitchen) 0)))
       (signals base:misuse (command:hand-insert hand (designate 'hamper)))
       (signals base:misuse (command:hand-insert-bin hand (bin 0)))

@@ -208,7 +208,7 @@
 
 (test manipulation.knows-its-own-robot's-designators-only
   (with-only (command::*manipulations*)
-    (run:with-simulation ((cook rover-in-kitchen) :clean t)
+    (run:with-simulation ((cook rover-in-kitchen) :clean t :ghosts t)
       (define-way 'poke '(it - () :by hand) '(nil done))
       (let ((other (robot:robot-hand (robot:find-robot 'rover-in-kitchen) 0)))
         (is (equal '(:failed nil) (outcome-of 'poke (designate 'apple) other)))))))

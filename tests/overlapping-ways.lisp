@@ -12,7 +12,7 @@
     (eval '(robot:defrobot walker-2 (hall-for-two (3 3) 0)))
     (run:call-with-simulation
      (lambda () (funcall function (robot:find-robot 'walker-1) (robot:find-robot 'walker-2)))
-     '(walker-1 walker-2) :seed 1 :journal t :clean t)))
+     '(walker-1 walker-2) :seed 1 :journal t :clean t :ghosts t)))
 
 (defun walk-from-one-spot (robots &rest distances)
   "Let each of ROBOTS go one of DISTANCES."

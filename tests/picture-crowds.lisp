@@ -92,7 +92,7 @@ of the lines that lead to names, x y x y each."
 
 (test robots.have-their-colours-in-parts-of-a-map-too
   "The second robot is drawn alike where the first is not to be seen."
-  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3)
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 3 :ghosts t)
     (let ((gofer (second (run:simulation-robots))))
       (dolist (robot (run:simulation-robots)) (robot:place-robot robot 20.5 20.5 0))
       (robot:place-robot gofer 60.5 38.5 0)

@@ -202,7 +202,7 @@ room."
         (is (null (best (list box) :anywhere-p t)))))))
 
 (test names.of-robots-on-one-spot-are-beside-each-other
-  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1 :ghosts t)
     (dolist (robot (run:simulation-robots)) (robot:place-robot robot 60.5 38.5 0))
     (is-true (has-words-p (display:svg-picture ars-worlds:marvin) ">marvin<" ">gofer<"))))
 

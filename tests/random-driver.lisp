@@ -25,7 +25,7 @@
 
 (robot:defrobot keeper (zoo (3.5 3.5) 0)
   :cameras (((/ pi 2) 3) ((* 2 pi) 5)) :hands (10 4) :bins (20 5))
-(robot:defrobot helper (zoo (3.3 3.3) 1)
+(robot:defrobot helper (zoo (2.5 3.5) 1)
   :cameras (((* 2 pi) 3)) :hands (6) :bins (8))
 
 ;;; Kickers. All they need comes from the world they run in.
@@ -337,7 +337,10 @@ what has been seen."
         do (complain "~A was not answered" name)))
 
 (defun come-home (robot)
-  (robot:place-robot robot (+ 3.1 (* .8 (base:roll (ride-dice *ride*)))) 3.5 1))
+  "Put ROBOT into the cell with the things, or beside it if the other robot is there."
+  (let* ((x (+ 3.1 (* .8 (base:roll (ride-dice *ride*)))))
+         (taken-p (robot:occupant-text (robot:robot-world robot) x 3.5 robot)))
+    (robot:place-robot robot (if taken-p (1- x) x) 3.5 1)))
 
 (defun step-ride ()
   "Do one thing, and let some ticks pass, perhaps none."

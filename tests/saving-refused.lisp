@@ -32,7 +32,7 @@ FILE as it is."
   (with-hermits ()
     (with-temporary-file (file)
       (run:with-simulation (hermit :journal t)
-        (robot:make-robot (robot:find-blueprint 'hermit) world:*world*)
+        (robot:add-robot (robot:find-blueprint 'hermit) world:*world*)
         (run:run-ticks 1)
         (check-refused #'run:save-simulation "the head names a robot twice" file)
         (check-refused #'run:save-journal "the head names a robot twice" file)))))

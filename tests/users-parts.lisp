@@ -36,7 +36,7 @@
     "Find that nothing is in it."
   (command:fail-with operation :empty))
 
-(robot:defrobot diver (meadow (4 10) 0) :cameras ((1 5)) :parts ((probe :reach 2)))
+(robot:defrobot diver (meadow (4 11) 0) :cameras ((1 5)) :parts ((probe :reach 2)))
 
 (defmacro with-diver ((&rest options) &body body)
   `(run:with-simulation (diver ,@options) ,@body))

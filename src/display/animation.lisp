@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.display)
 
-(export '(*frame-hook* checked-end-tick robots-of-journal))
+(export '(*frame-hook* checked-end-tick))
 
 ;;; An animated SVG has the terrain once, and a group for the movers of each frame, which is visible
 ;;; in its turn. Programs that do not animate show the first frame. A page for browsers can also be
@@ -78,13 +78,8 @@ Errors of FUNCTION are signalled after the replay."
                           (draw-movers canvas snapshot layers)
                           (draw-tick-label canvas (snapshot-tick snapshot))))))
 
-(defun robots-of-journal (journal)
-  "Return the names of the robots in the run of JOURNAL, a list of symbols."
-  (mapcar (lambda (robot) (blueprint-name (find-blueprint robot)))
-          (getf (journal-header journal) :robots)))
-
 (defun title-of-journal (journal)
-  (let ((names (robots-of-journal journal)))
+  (let ((names (journal-robot-names journal)))
     (robots-and-map-title (mapcar (lambda (name) (drawn-name (name-label name names))) names)
                           (map-name (find-map (getf (journal-header journal) :map))))))
 

@@ -264,4 +264,4 @@ and the contents."
                                                               (moments-in-remarks journal until)))
                               moments)))
                     (and (rest (snapshot-robots (film-cast-opening contents)))
-                         (robots-of-journal journal)))))))
+                         (journal-robot-names journal)))))))

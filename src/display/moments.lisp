@@ -92,9 +92,9 @@ without arguments, returns the moments found so far, the earliest first."
 (defun moments-in-remarks (journal until)
   "Return the moments in the remarks of JOURNAL, up to the tick UNTIL, or all if UNTIL is NIL."
   (loop for (tick kind text robot x y) in (reverse (journal-remarks journal))
-        for blueprint = (and robot (find-blueprint robot nil))
+        for name = (and robot (remembered-robot-name robot))
         when (or (null until) (<= tick until))
-          collect (make-moment tick kind text x y (and blueprint (blueprint-name blueprint)))))
+          collect (make-moment tick kind text x y name)))
 
 ;;; Users' own moments.
 

@@ -108,8 +108,9 @@ MALFORMED-DEFINITION for another FORM, or if there are OPTIONS, which the experi
 
 (define-user-macro is-success-rate
     (form &rest options
-          &key robots (at-least .95) trials (level .05) (seed 0) parameters clean
-          (limit +default-tick-limit+) (workers 1))
+          &key robots (at-least .95) trials (level .05) (seed 0) parameters clean ghosts
+          (limit +default-tick-limit+) (workers 1)
+     &environment environment)
   "Check, in a test of FiveAM, that the rate of success of FORM is at least AT-LEAST, by default
 .95. Return true if the check passes. Signals MALFORMED-DEFINITION, WRONG-ARGUMENT and UNKNOWN-NAME.
 
@@ -117,10 +118,11 @@ MALFORMED-DEFINITION for another FORM, or if there are OPTIONS, which the experi
     :robots marvin :at-least .9 :trials 60 :parameters ((motion-noise* .2) (max-speed* 2)))
 
 Each trial evaluates FORM in a fresh headless simulation. ROBOTS is the name of a robot or a list of
-names; the names are bound to the robots. As for :run of an experiment, the values of RUN-PLAN, or
-else the first value of FORM, decide whether the trial succeeded. Trials with an error or with more
-than LIMIT ticks do not succeed: so :limit 300 :at-least 1/2 checks that the median of ticks is at
-most 300. Trial T has the seed SEED + T. Parameters have the values of the manual, except those in
+names and entries (NAME :as OTHER-NAME :at (X Y) :angle A), see WITH-SIMULATION; the names are bound
+to the robots. If GHOSTS is true, robots have no bodies. As for :run of an experiment, the values of
+RUN-PLAN, or else the first value of FORM, decide whether the trial succeeded. Trials with an error
+or with more than LIMIT ticks do not succeed: so :limit 300 :at-least 1/2 checks that the median of
+ticks is at most 300. Trial T has the seed SEED + T. Parameters have the values of the manual, except those in
 PARAMETERS: lists (name form) as in DEFEXPERIMENT, or a form that returns lists (name value). If
 CLEAN is true, trials have no noise.
 
@@ -141,8 +143,10 @@ gives the numbers, the first unsuccessful trials with reasons, and a form that r
 trials, by REPEAT-TRIAL or REPLAY-TRIAL, in any Lisp with the same code."
   (if (and (consp form) (eq :experiment (first form)))
       (destructuring-bind (name condition)
-          (parse-experiment-clause form (intersection '(:robots :seed :parameters :clean :limit)
+          (parse-experiment-clause form (intersection '(:robots :seed :parameters :clean :ghosts
+                                                     :limit)
                                                       options))
         `(check-experiment-rate ,name ,condition ,at-least ,trials ,level ,workers))
-      `(check-form-rate ,(subject-expansion "is-success-rate" form robots parameters clean limit)
+      `(check-form-rate ,(subject-expansion "is-success-rate" form robots parameters clean
+                                             ghosts limit environment)
                         ,at-least ,(or trials 200) ,level ,workers ,seed)))

@@ -5,16 +5,18 @@
 (export '(repeat-trial))
 
 (defstruct (subject (:constructor make-subject
-                        (function form package robots parameters clean limit))
+                        (function form package robots parameters clean ghosts limit))
                     (:copier nil))
   "A form whose rate of success is checked. FUNCTION evaluates FORM, which was written in PACKAGE.
-Trials have ROBOTS; PARAMETERS, lists (name value); no noise if CLEAN; and at most LIMIT ticks."
+Trials have ROBOTS, without bodies if GHOSTS; PARAMETERS, lists (name value); no noise if CLEAN; and
+at most LIMIT ticks."
   (function nil :read-only t)
   (form nil :read-only t)
   (package nil :type package :read-only t)
   (robots '() :type list :read-only t)
   (parameters '() :read-only t)
   (clean nil :read-only t)
+  (ghosts nil :read-only t)
   (limit 0 :read-only t))
 
 (defconstant +default-tick-limit+ 100000 "The default for the largest number of ticks of a trial.")
@@ -44,21 +46,25 @@ say that PARAMETERS is an argument of OPERATOR."
                                                :parameters (convert-parameters
                                                             (subject-parameters subject)
                                                                             operator)
-                                               :clean (subject-clean subject))))
+                                               :clean (subject-clean subject)
+                                               :ghosts (subject-ghosts subject))))
       (setf (experiment-package experiment) (subject-package subject))
       experiment)))
 
 ;;; Expanding the macros.
 
-(defun parse-robot-names (operator robots form)
-  "Return ROBOTS, a name or list of names, as a list. Signals MALFORMED-DEFINITION without a name."
-  (let ((names (ensure-list (if (and (consp robots) (eq 'quote (first robots)))
-                                (second robots)
-                                robots))))
-    (unless (and (proper-list-p names) names (every #'symbolp names))
+(defun parse-robot-list (operator robots form)
+  "Return ROBOTS, a name, an entry (NAME :as ...) or a list of these, as a list. Signals
+MALFORMED-DEFINITION without a robot."
+  (let* ((robots (if (and (consp robots) (eq 'quote (first robots))) (second robots) robots))
+         (elements (if (typep robots '(cons t (cons keyword))) (list robots) (ensure-list robots))))
+    (unless (and (proper-list-p elements)
+                 elements
+                 (every (lambda (element) (typep element '(or symbol (cons symbol (cons keyword)))))
+                        elements))
       (reject-clause operator form
                      "an option :robots, with the name of a robot or a list of robots of one map"))
-    names))
+    elements))
 
 (defun parameters-form (operator parameters)
   "Return a form that returns lists (name value). PARAMETERS is such a form, or lists (name form)."
@@ -71,15 +77,16 @@ say that PARAMETERS is an argument of OPERATOR."
                      collect `(list ',(first part) ,(second part))))
       parameters))
 
-(defun subject-expansion (operator form robots parameters clean limit)
+(defun subject-expansion (operator form robots parameters clean ghosts limit environment)
   "Return a form that makes the subject from these arguments of the macro OPERATOR."
   (warn-of-nested-run form)
-  (let ((names (parse-robot-names operator robots form)))
+  (let ((robots (parse-robot-list operator robots form)))
     `(make-subject (lambda ()
-                     (declare (special ,@(variables-among names)))
+                     (declare (special ,@(names-in-robots robots)))
                      ,form)
-                   ',form (find-package ,(package-name *package*)) ',names
-                   ,(parameters-form operator parameters) ,clean ,limit)))
+                   ',form (find-package ,(package-name *package*))
+                   ,(literal-robots-form robots environment)
+                   ,(parameters-form operator parameters) ,clean (and ,ghosts t) ,limit)))
 
 ;;;; A trial
 
@@ -151,8 +158,9 @@ say that PARAMETERS is an argument of OPERATOR."
 
 (define-user-macro repeat-trial
     (form &rest options
-          &key robots (seed 1) parameters clean (limit +default-tick-limit+)
-          until then rate step journal trace)
+          &key robots (seed 1) parameters clean ghosts (limit +default-tick-limit+)
+          until then rate step journal trace
+     &environment environment)
   "Repeat a trial of a check by IS-SUCCESS-RATE in this thread: the trial of FORM with SEED. A
 failed check prints a form (repeat-trial ...); the arguments besides SEED are those of the check.
 
@@ -163,10 +171,12 @@ UNTIL, THEN, RATE, STEP, JOURNAL and TRACE are those of REPLAY-TRIAL, for exampl
 at a pace or to stop it in the middle. Return the same plist as REPLAY-TRIAL. Signals the errors of
 REPLAY-TRIAL, and MALFORMED-DEFINITION."
   (declare (ignore until then rate step journal trace))
-  `(repeat-subject-trial ,(subject-expansion "repeat-trial" form robots parameters clean limit)
+  `(repeat-subject-trial ,(subject-expansion "repeat-trial" form robots parameters clean ghosts
+                                             limit environment)
                          ,seed
                    (list ,@(loop for (key value) on options by #'cddr
-                                 unless (member key '(:robots :seed :parameters :clean :limit))
+                                 unless (member key '(:robots :seed :parameters :clean :ghosts
+                                                       :limit))
                                    append (list key value)))))
 
 ;;; As a text.
@@ -190,7 +200,8 @@ REPLAY-TRIAL, and MALFORMED-DEFINITION."
       ,@(when parameters
           `(:parameters ,(loop for (name value) in parameters
                                collect (list name (literal-form value)))))
-      ,@(when (subject-clean subject) '(:clean t)))))
+      ,@(when (subject-clean subject) '(:clean t))
+      ,@(when (subject-ghosts subject) '(:ghosts t)))))
 
 (defun repeat-trial-text (check result)
   (let ((subject (check-subject check)))

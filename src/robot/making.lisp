@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.robot)
 
-(export '(blueprint-robot make-robot start-problem-text check-not-retired retire-robot
-          call-run-enders ensure-resident-robot current-resident-world-p))
+(export '(blueprint-robot make-robot add-robot remove-robot *robot-hooks* robot-start-pose
+          start-problem-text check-not-retired retire-robot call-run-enders ensure-resident-robot
+          current-resident-world-p))
 
 ;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
 ;;; name; a fresh simulation makes another by the same blueprint.
@@ -21,14 +22,26 @@
   "Return a list of all robots, the values of their variables, in order of definition."
   (remove nil (mapcar #'blueprint-robot (all-blueprints))))
 
+(defun robot-of-current-run (name)
+  (and *world* (typep name '(or symbol string)) (find-robot-named name (world-robots *world*))))
+
+(defun exact-name-p (name blueprint)
+  "True if NAME is the symbol that names BLUEPRINT, or the full name of this symbol."
+  (or (eq name (blueprint-name blueprint))
+      (and (stringp name) (string-equal name (qualified-name (blueprint-name blueprint))))))
+
 (addition find-robot)
 (defun find-robot (name &optional (errorp t))
-  "Return the robot named NAME, a symbol or string: the value of the variable of this name. If NAME
-is a robot, return it. If there is no robot, signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
+  "Return the robot named NAME, a symbol or string: the value of the variable of this name, or the
+robot of this name in the current simulation. If NAME is a robot, return it. If there is no robot,
+signal UNKNOWN-NAME, or return NIL if ERRORP is NIL."
   (if (robot-p name)
       name
-      (let ((blueprint (find-blueprint name errorp)))
-        (and blueprint (blueprint-robot blueprint)))))
+      (let ((blueprint (find-blueprint name nil)))
+        (cond ((and blueprint (exact-name-p name blueprint)) (blueprint-robot blueprint))
+              ((robot-of-current-run name))
+              (blueprint (blueprint-robot blueprint))
+              (t (find-blueprint name errorp))))))
 
 ;;; Making robots.
 
@@ -54,17 +67,26 @@ is a robot, return it. If there is no robot, signal UNKNOWN-NAME, or return NIL 
                  (point-text x y) (map-width map) (map-height map)))
         ((wall-at-p map x y) (format nil "~A is inside a wall" (point-text x y)))))
 
-(defun check-start (blueprint map)
-  (let ((trouble (start-problem-text map (blueprint-x blueprint) (blueprint-y blueprint))))
+(defun blueprint-start (blueprint)
+  "Return the list (x y angle) of BLUEPRINT."
+  (list (blueprint-x blueprint) (blueprint-y blueprint) (blueprint-angle blueprint)))
+
+(defun robot-start-pose (robot)
+  "Return a list (x y angle): where ROBOT starts, in metres and radians."
+  (or (robot-start robot) (blueprint-start (robot-blueprint robot))))
+
+(defun check-start (blueprint map &optional (start (blueprint-start blueprint)))
+  (let ((trouble (start-problem-text map (first start) (second start))))
     (when trouble
       (reject-use "~(~A~) no longer fits into ~(~A~): ~A. Define the robot again."
                   (blueprint-name blueprint) (map-name map) trouble))))
 
-(defun make-robot (blueprint world)
-  "Make a robot from BLUEPRINT in WORLD and return it. Signals MISUSE if its start is in a wall or
-outside the map (reading 215)."
-  (check-start blueprint (world-map world))
-  (let ((robot (%make-robot :name (blueprint-name blueprint) :blueprint blueprint :world world)))
+(defun make-robot (blueprint world &key (name (blueprint-name blueprint)) start)
+  "Make a robot from BLUEPRINT in WORLD and return it. START, a list (x y angle), and NAME are given
+if the robot has another start or name than BLUEPRINT says. Signals MISUSE if its start is in a wall
+or outside the map (reading 215)."
+  (check-start blueprint (world-map world) (or start (blueprint-start blueprint)))
+  (let ((robot (%make-robot :name name :blueprint blueprint :world world :start start)))
     (ensure-timeline world)
     (setf (robot-mind robot) (make-mind :robot robot)
           (robot-parts robot) (make-parts robot (blueprint-parts blueprint)))
@@ -73,10 +95,8 @@ outside the map (reading 215)."
     robot))
 
 (defun put-at-start (robot)
-  (let ((blueprint (robot-blueprint robot)))
-    (set-robot-pose robot (blueprint-x blueprint) (blueprint-y blueprint)
-                    (blueprint-angle blueprint))
-    (add-odometer robot 'main)))
+  (apply #'set-robot-pose robot (robot-start-pose robot))
+  (add-odometer robot 'main))
 
 ;; A reset world has a new floor, without bodies; see ARRANGE-ROBOTS.
 (defmethod reset :before ((robot robot))
@@ -108,37 +128,90 @@ outside the map (reading 215)."
                            operator (robot-name robot) (robot-retired robot)
                            (and newest (null (robot-retired newest)) (robot-name robot))))))
 
+(define-event *robot-hooks*
+  "Functions called when a robot has joined or left a world whose run may have begun, with :JOINED
+or :LEFT, and the robot.")
+
+(defun end-waiting-requests (robot)
+  "Perform the requests to ROBOT, which is retired, that wait for the next tick: they end with
+:INTERRUPT. Otherwise the journal would have them after ROBOT has left."
+  (let ((timeline (timeline-of robot)) (resources (robot-resources robot)))
+    (dolist (request (reverse (timeline-inbox timeline)))
+      (when (and (intersection resources (rest (request-journal-entry request)))
+                 (withdraw-request request timeline))
+        (perform request timeline)))))
+
 (defun remove-robot (robot reason)
+  "Retire ROBOT for REASON, end what it does, and take it from its world."
   (let ((world (robot-world robot)))
     (deferring-interrupts
       (in-any-case
         (retire-robot robot reason)
         (call-run-enders robot)
+        (end-waiting-requests robot)
         (interrupt-resources (timeline-of robot) (robot-resources robot))
         (take-body robot)
         (setf (world-robots world) (remove robot (world-robots world)))
-        (arrange-robots world)))))
+        (arrange-robots world)
+        (call-listeners *robot-hooks* :left robot)))))
 
-(defun remove-robots-named (name reason)
-  (dolist (world (remove nil (mapcar #'map-resident (all-maps))))
+(defun remove-robots-named (name reason &optional except)
+  "Remove the robots called NAME from all resident worlds except the world EXCEPT, for REASON."
+  (dolist (world (remove except (remove nil (mapcar #'map-resident (all-maps)))))
     (dolist (robot (remove name (world-robots world) :key #'robot-name :test-not #'eq))
       (asking ((ensure-timeline world)) (remove-robot robot reason)))))
+
+(defun add-robot (blueprint world &rest options &key name start)
+  "Make a robot as MAKE-ROBOT does in WORLD, whose run may have begun. Return the robot."
+  (declare (ignore name start))
+  (let ((robot (apply #'make-robot blueprint world options)))
+    (arrange-robots world)
+    (call-listeners *robot-hooks* :joined robot)
+    robot))
 
 (defun find-robot-from-blueprint (blueprint world)
   (find-if (lambda (robot)
              (and (eq blueprint (robot-blueprint robot)) (null (robot-retired robot))))
            (world-robots world)))
 
+;; When a file is loaded again, it defines the robot in the way anew, too.
+(defun loaded-again-together-p (name other)
+  (and (defined-in-this-file-p name *robots*) (defined-in-this-file-p other *robots*)))
+
+(defun robot-in-the-way (blueprint world)
+  "Return a robot that is in the cell of WORLD where BLUEPRINT starts and will stay there, or NIL."
+  (flet ((cell (x y) (map-index (world-map world) x y)))
+    (find-if (lambda (robot)
+               (and (= (cell (robot-x robot) (robot-y robot))
+                       (cell (blueprint-x blueprint) (blueprint-y blueprint)))
+                    (not (eq (robot-name robot) (blueprint-name blueprint)))
+                    (not (loaded-again-together-p (blueprint-name blueprint)
+                                                  (robot-name robot)))))
+             (world-robots world))))
+
+(defun check-start-free (blueprint world)
+  "Signal MISUSE if the run of WORLD has begun and another robot is where BLUEPRINT starts."
+  (let ((other (and (plusp (world-tick world))
+                    (not (world-ghosts-p world))
+                    (robot-in-the-way blueprint world))))
+    (when other
+      (reject-use "defrobot ~(~A~): the run of ~(~A~) is at tick ~D, and ~A is in the cell of ~A. ~
+                   Choose another position, or drive ~A away first."
+                  (blueprint-name blueprint) (map-name (world-map world)) (world-tick world)
+                  (robot-label other)
+                  (point-text (blueprint-x blueprint) (blueprint-y blueprint))
+                  (robot-label other)))))
+
 (defun ensure-robot-in (world blueprint)
   "Return the robot in WORLD that was made from BLUEPRINT, or make it. Remove other robots of the
 same name. The calling thread must own WORLD."
   (or (find-robot-from-blueprint blueprint world)
       (progn
+        (check-start-free blueprint world)
         (dolist (robot (world-robots world))
           (when (eq (robot-name robot) (blueprint-name blueprint))
             (remove-robot robot "it has been defined anew")))
-        (prog1 (make-robot blueprint world)
-          (arrange-robots world)))))
+        (add-robot blueprint world))))
 
 (defun current-resident-world-p (world)
   "True if WORLD is the resident world of its map, and no other map has replaced this map."
@@ -155,7 +228,8 @@ earlier definitions of the same name. Return the robot, or the robot that is alr
     (let ((world (map-resident-world (find-map (blueprint-map blueprint)))) (robot nil))
       (check-start blueprint (world-map world))
       (unless (find-robot-from-blueprint blueprint world)
-        (remove-robots-named (blueprint-name blueprint) "it has been defined anew"))
+        (check-start-free blueprint world)
+        (remove-robots-named (blueprint-name blueprint) "it has been defined anew" world))
       (asking ((ensure-timeline world))
         (when (current-resident-world-p world) (setf robot (ensure-robot-in world blueprint))))
       (when robot (return robot)))))
@@ -163,17 +237,23 @@ earlier definitions of the same name. Return the robot, or the robot that is alr
 (defmethod undo-definition ((blueprint blueprint))
   (remove-robots-named (blueprint-name blueprint) "its definition has been taken back"))
 
+(defun put-robot-back (robot)
+  "Add ROBOT, which is in no world, to its world again: in the order in which robots were defined."
+  (let ((world (robot-world robot)))
+    (setf (world-robots world)
+          (sort (copy-list (adjoin robot (world-robots world))) #'<
+                :key (lambda (each)
+                       (or (position (robot-name each) (all-blueprints) :key #'blueprint-name)
+                           -1))))
+    (arrange-robots world)
+    (call-listeners *robot-hooks* :joined robot)))
+
 (defmethod redo-definition ((blueprint blueprint))
   (let ((robot (blueprint-robot blueprint)))
     (when (robot-p robot)
-      (let ((world (robot-world robot)))
-        ;; In the order in which they were defined.
-        (setf (robot-retired robot) nil
-              (world-robots world)
-              (sort (copy-list (adjoin robot (world-robots world))) #'<
-                    :key (lambda (each)
-                           (or (position (robot-name each) (all-blueprints) :key #'blueprint-name)
-                               -1)))))))
+      (setf (robot-retired robot) nil)
+      (unless (member robot (world-robots (robot-world robot)))
+        (put-robot-back robot))))
   blueprint)
 
 (define-facts (blueprint blueprint)

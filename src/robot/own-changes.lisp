@@ -118,11 +118,20 @@ destroyed: it no longer changes (manual 3.2.2)."
   (check-odometer odometer 'reset-odometer)
   (reset-odometer-ang (reset-odometer-pos odometer)))
 
+(defun check-not-occupied (robot x y)
+  "Signal WRONG-ARGUMENT if another robot than ROBOT has its body at (X,Y), in another cell."
+  (let* ((world (robot-world robot)) (map (world-map world)) (text (occupant-text world x y robot)))
+    (when (and text
+               (/= (map-index map x y) (map-index map (robot-x robot) (robot-y robot))))
+      (reject-argument "pos" "position" (list x y)
+                       (format nil "a point in a cell without a robot; ~A" text)))))
+
 (addition place-robot)
 (defun place-robot (robot x y angle)
   "Put ROBOT at (X,Y) heading ANGLE at once, exactly and without regard to obstacles, as the lines
 POS and ANGLE of the prompt do. A warning is queued if the position is inside a wall. Signals
-WRONG-ARGUMENT (manual E). See reading 114."
+WRONG-ARGUMENT, also if another robot is in that cell and robots have bodies (manual E). See
+reading 114."
   (check-argument place-robot robot (robot-p robot) (argument-type-text 'robot robot))
   (check-argument-type 'place-robot 'x x 'number)
   (check-argument-type 'place-robot 'y y 'number)
@@ -133,6 +142,7 @@ WRONG-ARGUMENT (manual E). See reading 114."
       (reject-argument "pos" "position" (list x y)
                        (format nil "a point of the map: 0 <= x < ~D, 0 <= y < ~D"
                                (map-width map) (map-height map)))))
+  (check-not-occupied robot x y)
   (changing ((robot-world robot) place-robot robot x y angle)
     (set-robot-pose robot x y angle)
     (warn-if-in-wall (robot-label robot) (robot-world robot) x y))

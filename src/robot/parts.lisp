@@ -55,7 +55,9 @@
          "the robot's body in a world with several robots; NIL if the robot is alone or a ghost"
          :addition)
    (dice-base 0 (unsigned-byte 32) "the position of the robot's first dice in its world's dice set")
-   (key 0 (unsigned-byte 62) "the hash of the robot's full name"))
+   (key 0 (unsigned-byte 62) "the hash of the robot's full name")
+   (start '() list "where the robot starts, a list (x y angle); () if it has the name and the start
+that its blueprint says" :export))
   (:state
    (x 0d0 double-float "the robot's true x coordinate, in metres" :addition)
    (y 0d0 double-float "the robot's true y coordinate, in metres" :addition)

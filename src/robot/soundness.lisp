@@ -96,14 +96,24 @@
                            0)))
                "~A has a body or dice although it is alone, or has none although it is not" robot)))
 
+(defun check-start-pose (robot world)
+  (let ((start (robot-start robot)))
+    (must-hold (or (null start)
+                   (and (proper-list-of-p #'sane-number-p start)
+                        (= 3 (length start))
+                        (map-index (world-map world) (first start) (second start))))
+               "the start of ~A is invalid" robot)))
+
 (defun check-robot (robot world)
   "ROBOT and WORLD were read from a file. Signal an error, usually CONTRADICTION, unless ROBOT is a
 robot of WORLD in a state that a run can reach."
   (must-hold (and (robot-p robot)
                   (eq world (robot-world robot))
                   (robot-blueprint robot)
-                  (eq (robot-name robot) (blueprint-name (robot-blueprint robot))))
+                  (or (eq (robot-name robot) (blueprint-name (robot-blueprint robot)))
+                      (robot-start robot)))
              "a robot does not belong to its world")
+  (check-start-pose robot world)
   (check-pending-event robot)
   (check-pose robot)
   (loop for (nil reader type) in *part-vectors*

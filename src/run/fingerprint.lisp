@@ -54,12 +54,23 @@ function that returns a thing's list of entries, NAME one that returns an entry'
         for entry = (lookup-entry name *commands*)
         when (and entry (users-entry-p entry)) collect name))
 
+(defun names-of-kinds (simulation)
+  "Return the names of the definitions of the robots that are or were in SIMULATION."
+  (remove-duplicates
+   (append (loop for robot in (simulation-robots simulation)
+                 collect (blueprint-name (robot-blueprint robot)))
+           (remove nil (mapcar (lambda (name)
+                                 (let ((blueprint (find-blueprint name nil)))
+                                   (and blueprint (blueprint-name blueprint))))
+                               (journalled-arguments 'robot-joined 1 simulation))))
+   :from-end t))
+
 (defun definition-names-in-use (kind simulation)
   (let ((map (world-map (simulation-world simulation))))
     (ecase kind
       (:map (list (map-name map)))
       (:map-clause (map-clause-kinds map))
-      (:robot (mapcar #'robot-name (simulation-robots simulation)))
+      (:robot (names-of-kinds simulation))
       (:kicker (append (names-used-by-things simulation
                                              (lambda (attachment)
                                                (kicker-name (attachment-kicker attachment)))

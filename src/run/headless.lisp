@@ -2,37 +2,40 @@
 
 (in-package :ars-magna.run)
 
-(export '(fresh-simulation *rewound-end-hooks* variables-among))
+(export '(fresh-simulation *rewound-end-hooks*))
 
 ;;; WITH-SIMULATION makes a fresh world, with fresh robots in it, for its extent.
 
-(defun fresh-simulation (robots &key (seed 0) journal (thinking :free))
-  "Return a new simulation of a fresh world, at tick 0. ROBOTS is a list of robots of one map or
-their names; the world contains fresh robots and the things of the map. If JOURNAL is true, the
-simulation keeps a journal. THINKING is the thinking mode."
-  (let* ((blueprints (mapcar (lambda (robot)
-                               (if (robot-p robot) (robot-blueprint robot) (find-blueprint robot)))
-                             robots))
-         (maps (remove-duplicates (mapcar #'find-map (mapcar #'blueprint-map blueprints)))))
-    (unless (= (length maps) 1)
-      (reject-use "All robots of a simulation must be defined in one map, but these are defined in ~
-                   ~:[none~;~:*~{~A~^, ~}~]."
-                  maps))
-    (let ((world (make-world (first maps) :seed seed)))
-      (dolist (blueprint blueprints) (make-robot blueprint world))
-      (arrange-robots world)
-      (let ((simulation (make-simulation world)))
-        (set-initial-thinking simulation thinking)
-        (when journal (begin-journal simulation))
-        simulation))))
+(defun fresh-simulation (robots &key (seed 0) journal (thinking :free) ghosts)
+  "Return a new simulation of a fresh world, at tick 0. The world contains the things of the map and
+fresh ROBOTS, given as for CALL-WITH-SIMULATION. If JOURNAL is true, the simulation keeps a journal.
+THINKING is the thinking mode. If GHOSTS is true, robots have no bodies."
+  (let* ((entries (parse-robots robots))
+         (world (make-world (find-map (blueprint-map (robot-entry-blueprint (first entries))))
+                            :seed seed)))
+    ;; A journal may begin in any state.
+    (unless (or ghosts (and (listp robots) (every #'robot-entry-p robots)))
+      (check-entries-apart 'with-simulation entries))
+    (setf (world-ghosts-p world) (and ghosts t))
+    (dolist (entry entries) (make-robot-of-entry entry world))
+    (arrange-robots world)
+    (let ((simulation (make-simulation world)))
+      (set-initial-thinking simulation thinking)
+      (when journal (begin-journal simulation))
+      simulation)))
+
+(defun make-robot-of-entry (entry world)
+  (let ((start (robot-entry-start entry)))
+    (when start (warn-of-angle-in-degrees 'with-simulation world (third start)))
+    (make-robot (robot-entry-blueprint entry) world :name (robot-entry-name entry) :start start)))
 
 (addition call-with-simulation)
-(defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep
+(defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep ghosts
                                                (thinking :free) (errors :report) variables)
   "Call FUNCTION without arguments in a new headless simulation of ROBOTS, and return its values.
-ROBOTS is a robot, its name, or a list of robots and names. VARIABLES are symbols of any package.
-Like the names of ROBOTS, each is bound to the robot of that name. The other arguments are options
-of WITH-SIMULATION."
+ROBOTS is a robot, its name, a list (NAME :as OTHER-NAME :at (x y) :angle a), or a list of these.
+VARIABLES are symbols of any package. Like the names of ROBOTS, each is bound to the robot of that
+name. The other arguments are options of WITH-SIMULATION."
   (check-argument with-simulation seed (integerp seed) "an integer")
   (check-thinking-mode 'with-simulation thinking)
   (check-argument with-simulation errors (typep errors 'error-policy)
@@ -44,8 +47,8 @@ of WITH-SIMULATION."
      (when clean (clean-simulation))
      (let ((*message-queue* (make-message-queue :error-policy errors)))
        (call-in-headless-run function
-                             (fresh-simulation (ensure-list robots) :seed seed :journal journal
-                                                                    :thinking thinking)
+                             (fresh-simulation robots :seed seed :journal journal :ghosts ghosts
+                                                      :thinking thinking)
                              :variables variables :keep keep)))))
 
 (defun call-in-headless-run (function simulation &key variables keep)
@@ -124,11 +127,6 @@ SIMULATION was forked, because ticks may have passed in the fork."
     (unless (eq last simulation)
       (call-listeners *rewound-end-hooks* simulation last))))
 
-(defun variables-among (names)
-  "NAMES is a list of names or a single name. Return a list of the names that can be variables."
-  (remove-if-not (lambda (name) (and (symbolp name) (variable-name-p name)))
-                 (ensure-list names)))
-
 (defun robots-named (names)
   "Return the robots of the current simulation that have the names NAMES, symbols of any package."
   ;; Their definitions may no longer exist.
@@ -151,20 +149,6 @@ earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
                (lambda (run) (or (null run) (eq simulation (latest-successor run)))))))
 
 ;;; The macro, and warnings about misspelt forms.
-
-(defun strip-quote (form)
-  (if (and (consp form) (eq 'quote (first form))) (second form) form))
-
-(defun robots-expression-p (form environment)
-  "True if FORM, the robots of WITH-SIMULATION, is an expression, not a name or a list of names."
-  (typecase form
-    (symbol (and form (known-variable-p form environment) (not (find-blueprint form nil))))
-    (cons (let ((head (first form)))
-            (and (symbolp head)
-                 (not (eq 'quote head))
-                 (not (find-blueprint head nil))
-                 (or (some #'consp (rest form))
-                     (known-function-p head environment)))))))
 
 (defun warn-of-used-command-values (body)
   (map-calls (lambda (form)
@@ -196,19 +180,22 @@ earlier live runs are forgotten. Signals WRONG-ARGUMENT. See WITH-SIMULATION."
   form)
 
 (addition with-simulation)
-(define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal keep
+(define-user-macro with-simulation ((robots &key (seed 0) parameters clean journal keep ghosts
                                             (thinking :free) (errors :report))
                                     &body body &environment environment)
   "Run BODY with ROBOTS bound to fresh robots in a fresh world, headless: ticks pass only when BODY
 calls RUN-TICKS or RUN-UNTIL. Return the values of BODY. ROBOTS is the name of a robot, of any
 package, or a list of names. It may be an expression that returns either, such as (list 'a 'b) or a
-variable that is not the name of a robot. Options:
+variable that is not the name of a robot. A list (NAME :as OTHER-NAME :at (X Y) :angle A) in place
+of a name means another robot like NAME, named OTHER-NAME, which starts at (X,Y). Each option may be
+missing; X, Y and A are evaluated. Options:
 - SEED, an integer, determines all randomness.
 - PARAMETERS, a list of lists (name value), binds parameters; others keep their current values.
 - CLEAN, if true, calls CLEAN-SIMULATION after binding PARAMETERS, so noise in PARAMETERS is
   removed, too.
 - JOURNAL, if true, makes the run keep a journal. KEEP makes the run keep forks, so that it can be
   rewound, see KEEP-FORKS.
+- GHOSTS, if true, makes robots neither block nor see each other.
 - THINKING says how much time thinking costs, see SET-THINKING.
 - ERRORS says how errors in user code and failures of plans are reported: :REPORT, :SIGNAL or
   :COLLECT, see below.
@@ -228,17 +215,15 @@ reported:
 - :COLLECT only queues a message; SIMULATION-ERRORS returns the errors and failures.
 With each value of ERRORS, a warning goes to the error output if no ticks have passed although
 something was requested, or if a plan waits for an event that nothing in the run can cause."
-  (let* ((form-p (robots-expression-p robots environment))
-         (robots (if form-p robots (strip-quote robots)))
-         (variables (if form-p '() (variables-among robots))))
-    (warn-of-used-command-values body)
+  (warn-of-used-command-values body)
+  (multiple-value-bind (robots variables) (robot-list-form robots environment)
     `(call-with-simulation (lambda ()
                              (declare (special ,@variables))
                              ,@body)
-                           ,(if form-p robots `',robots)
+                           ,robots
                            :variables ',variables
                            :seed ,seed :parameters ,(checked-settings-form parameters) :clean ,clean
-                           :journal ,journal :keep ,keep :thinking ,thinking
+                           :journal ,journal :keep ,keep :ghosts ,ghosts :thinking ,thinking
                            :errors ,errors)))
 
 (defmethod advice-on-use ((operator (eql 'with-simulation)) form)

@@ -113,9 +113,7 @@
   (flet ((wrong-p (key predicate) (not (funcall predicate (getf header key)))))
     (cond ((not (plist-p header)) "the head is no list of names and values")
           ((wrong-p :map #'stringp) "the head names no map")
-          ((not (and (getf header :robots) (list-of-p 'string (getf header :robots))))
-           "the head names no robots")
-          ((duplicates-p (getf header :robots)) "the head names a robot twice")
+          ((robots-error-text header))
           ((wrong-p :seed #'integerp) "its seed is no integer")
           ((not (thinking-mode-p (getf header :thinking :free))) "its thinking mode makes no sense")
           ((wrong-p :parameters #'settings-p) "its parameters make no sense")
@@ -131,7 +129,8 @@
   (flet ((described-p (kind name)
            (find (list kind name) (getf header :definitions) :test #'same-definition-p)))
     (if (described-p :map (getf header :map))
-        (find-if-not (lambda (name) (described-p :robot name)) (getf header :robots))
+        (find-if-not (lambda (name) (described-p :robot (kind-of-robot name header)))
+                     (getf header :robots))
         (getf header :map))))
 
 (defun entry-error-text (entry tick)
@@ -159,7 +158,8 @@
     (error "the file does not begin like a journal"))
   (check-file-format (second head) +journal-version+)
   (when (header-error-text (third head))
-    (error "the head makes no sense: ~A" (header-error-text (third head)))))
+    (error "the head makes no sense: ~A" (header-error-text (third head))))
+  (check-robots-of-header (third head)))
 
 (defun check-end (end entries)
   "Signal an error unless END is a valid last datum (:end tick) after ENTRIES."

@@ -167,13 +167,13 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
 (defun begin-journal (simulation)
   "Make SIMULATION keep a journal. No tick of SIMULATION has passed yet. Return the journal."
   (setf (simulation-journal simulation)
-        (make-journal (list :map (qualified-name
-                                  (map-name (world-map (simulation-world simulation))))
-                            :robots (robot-names simulation)
-                            :seed (simulation-seed simulation)
-                            :thinking (simulation-thinking simulation)
-                            :parameters (settings-with-string-names (non-default-parameters))
-                            :definitions (definitions-depended-on simulation)))))
+        (make-journal
+         `(:map ,(qualified-name (map-name (world-map (simulation-world simulation))))
+           ,@(robots-for-header simulation)
+           :seed ,(simulation-seed simulation)
+           :thinking ,(simulation-thinking simulation)
+           :parameters ,(settings-with-string-names (non-default-parameters))
+           :definitions ,(definitions-depended-on simulation)))))
 
 (defun set-initial-thinking (simulation mode)
   "Set the thinking mode of SIMULATION and of its journal to MODE. No tick has passed yet."
@@ -185,12 +185,10 @@ string, and ROBOT the robot concerned, if any. Return the remark, or NIL."
 (defun update-journal-definitions (simulation)
   "Store the current definitions in the journal of SIMULATION, because definitions may have changed
 since the journal was begun. No tick of SIMULATION has passed yet."
-  (let ((header (copy-list (journal-header (simulation-journal simulation)))))
+  (let* ((journal (simulation-journal simulation)) (header (copy-list (journal-header journal))))
     (setf (getf header :definitions) (definitions-depended-on simulation)
-          (journal-header (simulation-journal simulation)) header)))
-
-(defun robot-names (simulation)
-  (mapcar (lambda (robot) (qualified-name (robot-name robot))) (simulation-robots simulation)))
+          (journal-header journal) header)
+    (update-journal-ghosts simulation)))
 
 (defun journal-up-to-now (simulation)
   "Return a copy of the journal of SIMULATION, up to the current tick unless the journal is full.
@@ -201,10 +199,9 @@ The copy does not grow when SIMULATION continues. Signals MISUSE if SIMULATION k
                                   without :journal nil."))))
     (when (eq simulation *simulation*) (record-settings simulation))
     (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
-    ;; Robots may have been added and definitions changed since it began.
+    ;; Definitions may have changed since it began.
     (let ((header (copy-list (journal-header journal))))
-      (setf (getf header :robots) (robot-names simulation)
-            (getf header :definitions) (merge-definitions (getf header :definitions)
+      (setf (getf header :definitions) (merge-definitions (getf header :definitions)
                                                           (definitions-depended-on simulation))
             (journal-header journal) header))
     (copied-journal journal (simulation-tick simulation))))

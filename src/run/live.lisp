@@ -84,11 +84,26 @@ successor. Return SIMULATION."
        (not (simulation-over simulation))
        (or (not journal) (simulation-journal simulation))))
 
-(defun simulation-to-start (world seed journal)
+(defun check-world-robots-apart (world started-p)
+  "Signal MISUSE if two robots of WORLD are in one cell or, if STARTED-P is false, start in one."
+  (check-robots-apart 'simulator
+                      (loop for robot in (world-robots world)
+                            collect (cons (robot-name robot)
+                                          (if started-p
+                                              (list (robot-x robot) (robot-y robot))
+                                              (robot-start-pose robot))))
+                      (world-map world)))
+
+(defun simulation-to-start (world seed journal ghosts)
   "Return the simulation of WORLD that is to run live: a new one if the last is over, has passed
-ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the dice."
-  (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation)))
-    (cond ((not (startable-p simulation journal))
+ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the dice. If GHOSTS is
+true, robots have no bodies."
+  (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation))
+         (startable-p (startable-p simulation journal)))
+    (unless ghosts (check-world-robots-apart world startable-p))
+    (setf (world-ghosts-p world) (and ghosts t))
+    (when startable-p (permitting-changes (world) (arrange-robots world)))
+    (cond ((not startable-p)
            (end-simulation simulation "it has been started anew")
            (restart-world world (or seed (simulation-seed simulation))))
           (t (when seed
@@ -119,10 +134,10 @@ nested call, when this thread is already starting WORLD."
     (setf (global-value '*simulation*) simulation
           (global-value '*world*) (simulation-world simulation))))
 
-(defun start-world (world rate seed journal keep thinking everywhere)
+(defun start-world (world rate seed journal keep thinking ghosts everywhere)
   "Run WORLD live, with the options of SIMULATOR, and make its run the current simulation, see
 MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
-  (let ((simulation (simulation-to-start world seed journal)))
+  (let ((simulation (simulation-to-start world seed journal ghosts)))
     (set-initial-thinking simulation thinking)
     (if journal
         (update-journal-definitions simulation)
@@ -134,7 +149,7 @@ MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
     (keep-forks keep simulation)
     (start-clock simulation :rate rate :real (eq thinking :real))))
 
-(defun start-world-of-robot (robot rate seed journal keep thinking)
+(defun start-world-of-robot (robot rate seed journal keep thinking ghosts)
   "Run the world of ROBOT live, see START-WORLD. Return false if another thread has replaced ROBOT."
   (let ((world (robot-world robot))
         ;; This thread may be that of the current simulation, even if asked to stop.
@@ -145,7 +160,8 @@ MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
                                       (not (current-resident-world-p world)))
                              (retire-robot robot "its map has been defined anew"))
                            (unless (robot-retired robot)
-                             (start-world world rate seed journal keep thinking everywhere))))))
+                             (start-world world rate seed journal keep thinking ghosts
+                                          everywhere))))))
 
 (defun check-not-fork (robot)
   (when (timeline-fork-p (ensure-timeline (robot-world robot)))
@@ -154,7 +170,7 @@ MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
 (defun check-options-of-simulator (options)
   "Signal MISUSE if the plist OPTIONS has an option that neither SIMULATOR nor its hooks know."
   (unless (getf options :allow-other-keys)
-    (let ((strange (wrong-keyword-text `(&key rate seed journal keep thinking
+    (let ((strange (wrong-keyword-text `(&key rate seed journal keep thinking ghosts
                                            ,@*simulator-hook-options*)
                                     options)))
       (when strange (reject-use "simulator: ~A" strange)))))
@@ -162,16 +178,17 @@ MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
 (public simulator)
 (defun simulator (robot &rest options
                   &key (rate *default-rate*) (seed nil) (journal t) (keep *forks-to-keep*)
-                    (thinking :real)
+                    (thinking :real) ghosts
                   &allow-other-keys)
   "Run the world of ROBOT live, in a separate thread, at RATE ticks per second or :FREE, and make
 the run the current simulation. ROBOT is a robot, a map with a robot, or the name of a robot or map.
 A world that has run before starts anew, with SEED if SEED is given. The run keeps a journal unless
 JOURNAL is NIL; use NIL for busy programs at the rate :FREE. If KEEP is true, the run keeps forks,
 so that it can be rewound, see KEEP-FORKS. THINKING says how much time thinking costs, see
-SET-THINKING: with :REAL, plans have a separate thread; otherwise plans react within the ticks.
-Return the robot (manual A). STOP-SIMULATOR stops the run. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
-MISUSE if the robot no longer fits into its map. See reading 238."
+SET-THINKING: with :REAL, plans have a separate thread; otherwise plans react within the ticks. If
+GHOSTS is true, robots neither block nor see each other in this run. Return the robot (manual A).
+STOP-SIMULATOR stops the run. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if the robot no
+longer fits into its map, or if two robots start in one cell. See reading 238."
   (check-options-of-simulator options)
   (check-rate rate)
   (check-argument simulator seed (typep seed '(or null integer)) "an integer, or NIL")
@@ -179,7 +196,8 @@ MISUSE if the robot no longer fits into its map. See reading 238."
   (check-thinking-mode 'simulator thinking)
   (let ((robot (loop for candidate = (robot-to-start robot)
                      do (check-not-fork candidate)
-                     when (start-world-of-robot candidate rate seed journal keep thinking)
+                     when (start-world-of-robot candidate rate seed journal keep thinking
+                                                   ghosts)
                        return candidate)))
     (call-listeners *simulator-hooks* robot options)
     (set-variables-globally (robot-simulation robot))

@@ -18,7 +18,8 @@
   (let* ((head (third datum))
          (trouble (or (header-error-text (if (plist-p head) (list* :seed 0 head) head))
                       (saved-run-head-error-text head))))
-    (when trouble (error "the head makes no sense: ~A" trouble))))
+    (when trouble (error "the head makes no sense: ~A" trouble))
+    (check-robots-of-header head)))
 
 (defun saved-run-head-error-text (head)
   "Return a text about an error in HEAD that HEADER-ERROR-TEXT does not find, or NIL."
@@ -198,7 +199,10 @@ Parameters that are not in SETTINGS get their defaults."
   (reading-file (in file :run 'damaged-simulation)
     (let* ((reader (make-line-reader in 0 0))
            (head (read-head reader))
-           (simulation (simulation-from-lines reader head (file-length in))))
+           (simulation (progn
+                         ;; Names that no definition has made.
+                         (header-entries head)
+                         (simulation-from-lines reader head (file-length in)))))
       (unless (= (getf head :tick) (simulation-tick simulation))
         (error "the tick of the run is not the tick in the head"))
       (unless (= (getf head :digest) (state-digest simulation))
@@ -208,8 +212,7 @@ Parameters that are not in SETTINGS get their defaults."
 (defun check-saved-definitions (head)
   "Signal UNKNOWN-NAME if a robot in HEAD, the head of a saved run, is not defined. Signal
 DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if definitions have changed."
-  (let ((differences (header-differences head
-                                         (mapcar #'find-blueprint (getf head :robots)))))
+  (let ((differences (header-differences head (header-blueprints head))))
     (when differences
       (restart-case (error 'different-definitions :differences differences
                                                   :file "saved run" :verb "load")

@@ -81,9 +81,18 @@ SIMULATION to the simulation."
   (append (list first) (butlast elements) (first (last elements))))
 
 (defun robot-in (simulation name)
-  (or (find-robot-named name (simulation-robots simulation))
-      (reject-name "robot in this simulation" name
-                   (mapcar #'robot-name (simulation-robots simulation)))))
+  "Return the robot in SIMULATION that NAME, the name in a reference, means."
+  (let* ((robots (simulation-robots simulation)) (robot (find-robot-named name robots)))
+    (cond ((null robot)
+           (reject-name "robot in this simulation" name (mapcar #'robot-name robots)))
+          ((and (not (symbolp name))
+                (not (string-equal name (robot-full-name robot)))
+                (string-equal (robot-label robot) (robot-full-name robot)))
+           (reject-use "Several robots in this run are called ~A: ~{~A~^, ~}. Give the full name."
+                       name (mapcar #'robot-full-name
+                                    (remove name robots :key #'robot-name
+                                                        :test-not #'same-name-p))))
+          (t robot))))
 
 (define-dereference :simulation ()
   simulation)

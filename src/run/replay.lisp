@@ -42,7 +42,7 @@ are the robots' blueprints. There is also a text for each robot that is now in a
 (defun changed-definitions-sentence (journal)
   "Return a sentence about JOURNAL if its definitions are not the current definitions; or NIL."
   (let ((header (journal-header journal)))
-    (and (header-differences header (mapcar #'find-blueprint (getf header :robots)))
+    (and (header-differences header (header-blueprints header))
          "The run is repeated with definitions that have changed since it was recorded.")))
 
 ;;; To repeat very many ticks without requests takes long, so it must be asked for.
@@ -120,8 +120,8 @@ simulation when the entries before the first tick have been repeated."
                       (truncated-journal journal until)
                       journal))
          (header (journal-header journal))
-         (blueprints (mapcar #'find-blueprint (getf header :robots))))
-    (unless anyway (check-definitions header blueprints))
+         (entries (header-entries header)))
+    (unless anyway (check-definitions header (mapcar #'robot-entry-blueprint entries)))
     (unless until (check-empty-ticks journal))
     (call-with-simulation
      (lambda ()
@@ -132,9 +132,10 @@ simulation when the entries before the first tick have been repeated."
          (take-unread-messages (simulation-messages simulation))
          (when observer (remove-observer observer simulation))
          (funcall function)))
-     (mapcar #'blueprint-name blueprints)
-     :seed (getf header
-                 :seed) :parameters (settings-with-defaults (getf header :parameters)) :journal t
+     entries
+     :variables (remove-if-not #'variable-name-p (journal-robot-names journal))
+     :ghosts (getf header :ghosts) :seed (getf header :seed)
+     :parameters (settings-with-defaults (getf header :parameters)) :journal t
      :keep keep :thinking (getf header :thinking :free))))
 
 (addition with-replay)

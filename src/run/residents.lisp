@@ -45,8 +45,13 @@ map. If the map or definition of a robot has been replaced, return the current r
         (find-current-robot (robot-name robot))
         robot)))
 
-(defun bind-robot-name (blueprint robot)
-  (setf (global-value (blueprint-name blueprint)) robot))
+(defun defined-robot-p (name)
+  "True if the symbol NAME is the name of a definition by DEFROBOT."
+  (let ((blueprint (find-blueprint name nil)))
+    (and blueprint (eq name (blueprint-name blueprint)))))
+
+(defun bind-robot-name (robot)
+  (setf (global-value (robot-name robot)) robot))
 
 (defun ensure-named-robot (blueprint)
   "Return the resident robot of BLUEPRINT, made if needed. Set the robot's variable to this robot."
@@ -54,7 +59,7 @@ map. If the map or definition of a robot has been replaced, return the current r
     (let ((robot (ensure-resident-robot blueprint)))
       ;; Another thread that has replaced its world meanwhile has retired it.
       (asking (robot)
-        (unless (robot-retired robot) (bind-robot-name blueprint robot)))
+        (unless (robot-retired robot) (bind-robot-name robot)))
       (unless (robot-retired robot) (return robot)))))
 
 (defun find-current-robot (name)

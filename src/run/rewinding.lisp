@@ -92,6 +92,7 @@ waiting; and the tick at which a plan diverged while the past was repeated, or N
          (run (await-fork (fork-record-fork kept) nil '()))
          (acts (reverse (ldiff (append asked (past-acts past)) (fork-record-acts kept))))
          (done-p nil))
+    (bind-joining-robots run (append asked acts))
     (unwind-protect
          (let ((diverged (call-in-simulation run (lambda () (repeat-acts run acts tick)))))
            (setf (simulation-past run) past
@@ -110,11 +111,19 @@ it: the binding, the global value or both."
          (lambda (symbol value) (setf (global-value symbol) value (symbol-value symbol) value)))
         (t #'set)))
 
+(defun robot-without-variable-p (symbol value)
+  "True if VALUE is the robot called SYMBOL and has left its run, or is no longer defined."
+  (and (robot-p value)
+       (eq symbol (robot-name value))
+       (or (robot-retired value)
+           (and (not (headless-p (robot-simulation value)))
+                (not (defined-robot-p symbol))))))
+
 (defun take-over-variables (new old)
   "Set the variables of OLD to their values in NEW, where code in OLD sees them."
   (let ((setter (variable-setter old)))
     (loop for (symbol . value) in (simulation-environment new)
-          do (funcall setter symbol value))
+          do (unless (robot-without-variable-p symbol value) (funcall setter symbol value)))
     (loop for parameter in (all-parameters)
           for value across (simulation-known-parameters new)
           do (funcall setter (parameter-symbol parameter) value))
@@ -126,7 +135,7 @@ it: the binding, the global value or both."
   (let ((world (simulation-world new)))
     (setf (map-resident (world-map world)) world)
     (dolist (robot (world-robots world))
-      (bind-robot-name (robot-blueprint robot) robot))))
+      (when (defined-robot-p (robot-name robot)) (bind-robot-name robot)))))
 
 (defun hand-over-observers (new old)
   "Make NEW the successor of OLD, and give NEW the observers, gate and messages of OLD."

@@ -105,15 +105,16 @@ each of its threads has its own."
   (let ((used (append (definitions-depended-on simulation)
                       (current-definitions (user-commands-in-progress simulation)))))
     (list* :map (qualified-name (map-name (world-map (simulation-world simulation))))
-           :robots (robot-names simulation)
-           :tick (simulation-tick simulation)
-           :digest (state-digest simulation)
-           :kickers-old-p (/= *kicker-generation*
-                              (world-kicker-generation (simulation-world simulation)))
-           :parameters (settings-of simulation)
-           :journal (and journal t)
-           :definitions (remove-duplicates used :test #'same-definition-p :from-end t)
-           programs)))
+           (append
+            (robots-for-header simulation)
+            (list* :tick (simulation-tick simulation)
+                   :digest (state-digest simulation)
+                   :kickers-old-p (/= *kicker-generation*
+                                      (world-kicker-generation (simulation-world simulation)))
+                   :parameters (settings-of simulation)
+                   :journal (and journal t)
+                   :definitions (remove-duplicates used :test #'same-definition-p :from-end t)
+                   programs)))))
 
 (defun write-saved-run (simulation journal programs out)
   "Write SIMULATION and any JOURNAL of it to OUT. PROGRAMS is a value of PROGRAM-STATE-FOR-HEAD."

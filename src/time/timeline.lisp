@@ -4,10 +4,10 @@
 
 (export '(timeline make-timeline timeline-p timeline-of timeline-tick phase-in-this-thread
           record-code-moment check-not-over check-own-run check-not-secluded with-seclusion
-          wake-owner
-          post post-again take-requests requested-inside-tick-p owner-p *repeated-timeline*
-          continuation-suppressed-p notify-later deliver-notifications check-thinking-mode
-          thinking-modes-text thinking-mode-p timeline-thinking set-timeline-thinking
+          wake-owner post post-again withdraw-request take-requests requested-inside-tick-p owner-p
+          *repeated-timeline* continuation-suppressed-p notify-later deliver-notifications
+          check-thinking-mode thinking-modes-text thinking-mode-p timeline-thinking
+          set-timeline-thinking
           choose-plan-threads thinking-charged-p thinking-budget))
 
 ;;; The thread that owns the timeline passes its ticks. Other threads use it in two ways. POST

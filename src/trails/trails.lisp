@@ -139,7 +139,7 @@ TOLERANCE from the line through the returned points (Douglas and Peucker 1973)."
   (check-argument save-trajectory every (whole-p every 1)
                   "a whole number of ticks, from 1 to 1e9")
   (checked-end-tick 'save-trajectory journal until)
-  (let ((known (robots-of-journal journal)))
+  (let ((known (journal-robot-names journal)))
     (dolist (name robots)
       (unless (robots-meant name known :key #'identity)
         (reject-name "robot in the run of the journal" name known)))))

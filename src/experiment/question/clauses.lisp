@@ -71,9 +71,11 @@ each of its ranges. Equal points count once; ranges of few integers give equal p
 ;;;; All clauses
 
 (defparameter *clause-syntax*
-  '((:robots "(:robots name...), robots of one map")
+  '((:robots "(:robots name...), robots of one map; in place of a name also ~
+              (name :as other-name :at (x y) :angle a)")
     (:parameters "(:parameters (parameter form)...)")
     (:clean "(:clean) or (:clean t)")
+    (:ghosts "(:ghosts) or (:ghosts t)")
     (:thinking "(:thinking mode), as WITH-SIMULATION takes it")
     (:vary "(:vary part...). A part is (what form...), (what :in form) with values in a list, or a ~
             design such as (:sobol n (what low high)...)")
@@ -257,14 +259,18 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
 
 (defun check-clause (definition clause)
   (ecase (first clause)
-    (:robots (check-elements definition clause (lambda (name) (and name (typep name 'symbol)))))
+    (:robots (check-elements definition clause
+                             (lambda (element)
+                               (typep element '(or (and symbol (not null))
+                                                (cons symbol (cons keyword)))))))
     (:parameters
      (check-elements definition clause
                      (lambda (part)
                        (and (typep part 'named-form) (parameter-of-variable (first part))))
                      "(parameter form), with a parameter of the simulation such as max-speed*")
      (check-names-differ definition clause (mapcar #'first (rest clause))))
-    (:clean (unless (member (rest clause) '(() (t) (nil)) :test #'equal)
+    ((:clean :ghosts)
+     (unless (member (rest clause) '(() (t) (nil)) :test #'equal)
               (reject-by-usage definition clause)))
     (:vary (check-elements definition clause #'consp)
      (dolist (part (rest clause))

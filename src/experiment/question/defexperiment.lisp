@@ -27,16 +27,15 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
     (and forms
          `(lambda ,variables
             (declare (ignorable ,@(remove-if #'special-p variables))
-                     (special ,@(remove-if-not #'variable-name-p
-                                               (clause-arguments :robots clauses))))
+                     (special ,@(names-in-robots (clause-arguments :robots clauses))))
             ,@forms))))
 
 (defun named-functions-form (key clauses)
   `(list ,@(loop for (name form) in (clause-arguments key clauses)
                  collect `(list ',name ,(function-form clauses (list form))))))
 
-(defun clean-clause-p (clauses)
-  (multiple-value-bind (rest given) (clause-arguments :clean clauses)
+(defun flag-clause-p (key clauses)
+  (multiple-value-bind (rest given) (clause-arguments key clauses)
     (and given (or (null rest) (first rest)))))
 
 (defun thinking-form (clauses)
@@ -45,17 +44,18 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
 
 (defun trial-affecting-clauses (clauses)
   "Return those CLAUSES that affect the outcome of a trial, except the factors."
-  (loop for key in '(:robots :parameters :clean :thinking :seed :limit :run :until :success
-                     :measure :each-tick)
+  (loop for key in '(:robots :ghosts :parameters :clean :thinking :seed :limit :run :until
+                     :success :measure :each-tick)
         for clause = (find key clauses :key #'first)
         when clause collect clause))
 
 (defun definition-form (name documentation clauses form)
   `(define-experiment ',name
      :documentation ,documentation
-     :robots ',(clause-arguments :robots clauses)
+     :robots ,(literal-robots-form (clause-arguments :robots clauses))
      :parameters ,(named-values-form (clause-arguments :parameters clauses) #'second)
-     :clean ,(clean-clause-p clauses)
+     :clean ,(flag-clause-p :clean clauses)
+     :ghosts ,(flag-clause-p :ghosts clauses)
      :thinking ,(thinking-form clauses)
      :factors ,(named-values-form (clause-arguments :vary clauses) #'values-form)
      :cases (list ,@(loop for (name . parts) in (clause-arguments :conditions clauses)
@@ -78,10 +78,13 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
 (define-user-macro defexperiment (&whole form name &body clauses &environment environment)
   "Define the experiment NAME, which RUN-EXPERIMENT runs. The first clause may be a string, the
 question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. The CLAUSES are:
-  (:robots name...)          the robots in the world of each trial, all of one map
+  (:robots name...)          the robots in the world of each trial, all of one map; in place of a
+                             name also (name :as other-name :at (x y) :angle a): another robot like
+                             NAME, see WITH-SIMULATION
+  (:ghosts)                  robots neither block nor see each other
   (:run form...)             what a trial does, in a fresh headless simulation
   (:vary (what form...)...)  the factors and their values; all combinations are run. WHAT is a
-                             parameter, :ROBOTS (values are names or lists of names, quoted),
+                             parameter, :ROBOTS (values are names or lists as in :robots, quoted),
                              :THINKING (values are thinking modes), or a variable in the other
                              clauses; a special variable is bound. (what :in form) takes values
                              from a list. Values are numbers, symbols, strings, or lists of these.
@@ -133,7 +136,7 @@ deadlock. The documentation of RUN-EXPERIMENT says what is kept."
   "Signal MALFORMED-DEFINITION unless the factor of PART can have VALUE."
   (let* ((name (first part))
          (parameter (and (not (keyword-factor-p name)) (parameter-of-variable name))))
-    (cond ((eq :robots name) (check-robots definition part (ensure-list value)))
+    (cond ((eq :robots name) (check-robots definition part (robots-in-value value)))
           ((eq :thinking name)
            (unless (thinking-mode-p value)
              (reject-clause definition part
@@ -151,7 +154,35 @@ deadlock. The documentation of RUN-EXPERIMENT says what is kept."
                                        table must have a text for it"
                                   (safe-text value)))))))
 
-(defun check-robots (definition part names)
+(defun robots-in-value (value)
+  "Return VALUE, a robot or a list of robots, as a list."
+  (if (typep value '(cons t (cons keyword))) (list value) (ensure-list value)))
+
+(defun call-rejecting-robots (function definition part)
+  "Call FUNCTION, which checks a list of robots. Report its errors as MALFORMED-DEFINITION."
+  (handler-case (funcall function)
+    (ars-magna-error (trouble)
+      (reject-clause definition part
+                     (format nil "robots such as ann or (ann :as bob :at (3 4)); ~A"
+                             (string-right-trim "." (one-line-text trouble)))))))
+
+(defun check-robots-apart-in-conditions (definition experiment)
+  "Signal MALFORMED-DEFINITION if robots of a condition of EXPERIMENT start in one cell."
+  (unless (experiment-ghosts experiment)
+    (dolist (condition (experiment-conditions experiment))
+      (let ((robots (condition-robots condition)))
+        (call-rejecting-robots (lambda () (check-entries-apart definition (parse-robots robots)))
+                               definition (list* :robots robots))))))
+
+(defun check-robots (definition part robots)
+  (check-robot-names definition part (mapcar #'kind-in-entry robots))
+  (when robots (call-rejecting-robots (lambda () (parse-robots robots)) definition part)))
+
+(defun kind-in-entry (robot)
+  "Return the name of the kind of ROBOT, a name or an entry (name :as ...)."
+  (if (consp robot) (first robot) robot))
+
+(defun check-robot-names (definition part names)
   (dolist (name names)
     (unless (and name (symbolp name))
       (reject-clause definition part
@@ -187,7 +218,9 @@ deadlock. The documentation of RUN-EXPERIMENT says what is kept."
   (unless (and (proper-list-p values) values)
     (reject-clause definition part "a list of at least one value"))
   (dolist (value values) (check-value definition part value))
-  (check-values-differ definition part (mapcar #'value-text values)))
+  (let ((*robots-compared* (names-in-value values)))
+    (check-values-differ definition part
+                         (mapcar (lambda (value) (factor-text (first part) value)) values))))
 
 (defun axis-from-values (definition part values)
   "Return the axis for PART of :vary. VALUES is what the form from VALUES-FORM returns."
@@ -220,6 +253,14 @@ deadlock. The documentation of RUN-EXPERIMENT says what is kept."
                                  (condition-texts condition))))
         (setf (gethash name known) condition)))))
 
+(defun robot-values (experiment)
+  "Return a list of the values of the factor :ROBOTS in EXPERIMENT."
+  (loop for (name value) in (append (loop for (nil choices) in (experiment-axes experiment)
+                                          append (apply #'append choices))
+                                    (loop for (nil settings) in (experiment-cases experiment)
+                                          append settings))
+        when (eq :robots name) collect value))
+
 (defun experiment-from-options (name definition
                                 &rest options
                                 &key robots parameters clean (thinking :free) factors cases
@@ -234,9 +275,11 @@ other slots of an experiment."
                            collect (list case (checked-settings definition settings))))
          (experiment (apply #'%make-experiment :name name :axes axes :cases cases-from
                                                :allow-other-keys t options))
-         (settings (checked-settings definition parameters)))
+         (settings (checked-settings definition parameters))
+         (*robots-compared* (names-in-value (robot-values experiment))))
     (setf (experiment-conditions experiment)
           (call-with-trial-syntax (lambda () (all-conditions experiment clean settings))))
+    (check-robots-apart-in-conditions definition experiment)
     (check-conditions-differ definition
                              (if factors
                                  (list* :vary (mapcar #'first factors))

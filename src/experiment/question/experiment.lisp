@@ -39,10 +39,17 @@ variables hold weakly: the keys of a table" :writable))
             for choice in (second (first axes))
             append (loop for others in rest collect (append choice others)))))
 
+(defvar *robots-compared* '()
+  "The names of robots that the values of the factor :ROBOTS of the current experiment contain.")
+
+(defun factor-text (name value)
+  "Return the text in tables of VALUE, a value of the factor NAME."
+  (value-text (if (eq :robots name) (with-full-names value *robots-compared*) value)))
+
 (defun make-condition-name (case-name settings)
   (let ((words (append (and case-name (list (string-downcase case-name)))
                        (loop for (name value) in settings
-                             collect (format nil "~(~A~)=~A" name (value-text value))))))
+                             collect (format nil "~(~A~)=~A" name (factor-text name value))))))
     (if words (format nil "~{~A~^ ~}" words) "all")))
 
 ;;; Parameters.
@@ -74,6 +81,7 @@ name counts. Other parameters have the value without noise if CLEAN is true, els
   (package *package* package "the package in which the experiment was written" :writable :export)
   (robots '() list :writable)
   (thinking :free t :writable)
+  (ghosts nil boolean "true if robots have no bodies in trials" :writable)
   (axes '() list :writable)
   (cases '() list "lists (name settings), settings are lists (factor-name value)" :writable)
   (conditions '() list "a list of the experiment's conditions" :writable :addition)
@@ -108,9 +116,9 @@ PARAMETERS are lists (name value) for all conditions."
      :name (make-condition-name case-name others)
      :texts (append (and (experiment-cases experiment) (list (string-downcase case-name)))
                     (loop for name in (factor-names experiment)
-                          collect (value-text (second (assoc name settings)))))
+                          collect (factor-text name (second (assoc name settings)))))
      :settings settings
-     :robots (if robots (ensure-list robots) (experiment-robots experiment))
+     :robots (if robots (robots-in-value robots) (experiment-robots experiment))
      :thinking (second (or (assoc :thinking settings)
                            (list :thinking (experiment-thinking experiment))))
      :parameters (all-parameter-values (append parameters settings) clean)

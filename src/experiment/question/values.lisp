@@ -106,6 +106,19 @@ that it is the same in each run."
     (:none "")
     (t (call-with-trial-syntax (lambda () (plain-value-text value))))))
 
+;;; Robots. Names that differ only in their packages are written in full.
+
+(defun names-in-value (value)
+  (cond ((consp value) (append (names-in-value (car value)) (names-in-value (cdr value))))
+        ((and value (symbolp value) (not (keywordp value))) (list value))))
+
+(defun with-full-names (value all)
+  "Return VALUE with the full name of each symbol in it that has the name of another symbol in ALL."
+  (flet ((ambiguous-p (name)
+           (some (lambda (other) (and (not (eq name other)) (same-name-p name other))) all)))
+    (let ((names (remove-if-not #'ambiguous-p (names-in-value value))))
+      (sublis (mapcar (lambda (name) (cons name (qualified-name name))) names) value))))
+
 ;;; Back from a table.
 
 (defun number-from-text (text)

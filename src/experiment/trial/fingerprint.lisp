@@ -232,10 +232,11 @@ was loaded. WRITTEN is the date at loading, or NIL."
         (list :experiment (string-downcase (experiment-name experiment))
               (form-digest (experiment-deciding experiment)))
         (list :condition (condition-name condition)
-              (data-digest (list (condition-robots condition)
-                                 (condition-thinking condition)
-                                 (coerce (condition-parameters condition) 'list)
-                                 (condition-arguments condition))))))
+              (data-digest (list* (condition-robots condition)
+                                  (condition-thinking condition)
+                                  (coerce (condition-parameters condition) 'list)
+                                  (condition-arguments condition)
+                                  (and (experiment-ghosts experiment) '(:ghosts)))))))
 
 (defun definitions-in-trial (experiment condition)
   "Return the definitions in use when a trial of CONDITION begins; see DEFINITIONS-DEPENDED-ON."

@@ -55,8 +55,8 @@ to call besides the gate of the limit. If JOURNAL is true the simulation keeps a
                  (funcall function)))
              (condition-robots condition)
              :seed seed :journal journal :thinking (condition-thinking condition)
-             :errors :signal
-             :variables (remove-if-not #'variable-name-p (condition-robots condition)))))))
+             :ghosts (experiment-ghosts experiment) :errors :signal
+             :variables (names-in-robots (condition-robots condition)))))))
      (experiment-package experiment))))
 
 ;;; Running the forms.
