@@ -19,7 +19,7 @@
   (loop for robot in robots
         collect (list (robot:robot-x robot) (robot:robot-y robot) (robot:robot-angle robot))))
 
-(defun drive-all (simulation)
+(defun drive-robots-of (simulation)
   "Let each robot of SIMULATION drive on its own way."
   (loop for robot in (run:simulation-robots simulation)
         for turn from 1
@@ -127,7 +127,7 @@
   "Return the digest at the end of a run of three robots, and the value of THEN after 60 ticks."
   (run:with-simulation ((mare (mare :as filly :at (12 12) :angle 1) (colt :at (20 5)))
                         :seed 8 :journal t :keep t)
-    (drive-all time:*simulation*)
+    (drive-robots-of time:*simulation*)
     (run:run-ticks 30)
     (let ((value (funcall then)))
       (run:run-ticks (- 80 (run:simulation-tick)))
@@ -170,7 +170,7 @@
   (with-temporary-file (file)
     (let ((digest (run:with-simulation ((list 'colt (list 'colt :as (intern "FOAL" :pa) :at '(9 9)))
                                         :journal t)
-                    (drive-all time:*simulation*)
+                    (drive-robots-of time:*simulation*)
                     (run:save-journal file)
                     (run:state-digest))))
       (unintern (find-symbol "FOAL" :pa) :pa)
