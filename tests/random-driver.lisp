@@ -372,10 +372,6 @@ the journal and the digest of the state at its end."
               (and journal (run:journal-up-to-now time:*simulation*))
               (run:state-digest)))))
 
-(defun troubles-of-ride (commands seed)
-  "Return what was wrong in a random drive of COMMANDS commands, oldest first."
-  (reverse (ride-troubles (drive-at-random commands seed))))
-
 (defun outcomes-of (rides family)
   "Return the lists (name code) of how commands of FAMILY have ended in RIDES."
   (remove-duplicates

@@ -78,6 +78,10 @@
     (loop for (name) being the hash-keys of (ride-pending *ride*)
           do (complain "~A was not answered when its run ended" name))))
 
+(defun troubles-of-ride (commands seed)
+  "Return what was wrong in a random drive of COMMANDS commands, oldest first."
+  (reverse (ride-troubles (drive-at-random commands seed))))
+
 (defun troubles-of-runs (runs commands seed)
   "Return what was wrong in RUNS runs of COMMANDS commands each, one after the other, oldest first."
   (base:with-own-definitions ()

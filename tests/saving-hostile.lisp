@@ -6,8 +6,8 @@
 
 (defun write-saved-ride (file)
   "Save a moment of a random ride in FILE. Return the digest."
-  (run:with-simulation ((keeper helper) :seed 8 :journal t)
-    (let ((*ride* (make-ride (base:make-dice 8 "hostile")))
+  (run:with-simulation ((keeper helper) :seed 34 :journal t)
+    (let ((*ride* (make-ride (base:make-dice 34 "hostile")))
           (*commands-to-draw* (recorded-commands)))
       (populate)
       (loop repeat 40 do (step-ride) (base:take-messages))

@@ -130,9 +130,10 @@ of the run share a random state."
       (or (runner-lisps-dice runner)
           (setf (runner-lisps-dice runner)
                 (seeded-random-state (+ (simulation-seed simulation)
-                                        ;; How many robots of the run come before it.
+                                        ;; How many robots of the run have full names that come before its own.
                                         (or (position (interface-robot interface)
-                                                      (simulation-robots simulation))
+                                                      (robots-in-order
+                                                       (simulation-world simulation)))
                                             0))))))))
 
 (defun react-fully (interface)

@@ -116,13 +116,15 @@ time is carried out first, and a command in the background goes on."
                             (settings-to-apply settings)))))))
 
 (defun post-answer (interface action err results)
-  "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of INTERFACE."
+  "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of INTERFACE. Plans
+that are about to end, because their robot is gone, get none."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (action-outcome action) (action-resource action) err results))
       (let ((answer (make-answer action err settings (final-answer-p (action-command action) err))))
-        (add-answer answer interface)
-        (post-entry (interface-runner interface) (lambda () (apply-answer answer interface)))
+        (unless (interface-closing-p interface)
+          (add-answer answer interface)
+          (post-entry (interface-runner interface) (lambda () (apply-answer answer interface))))
         (when (answer-last-p answer) (setf (action-over-p action) t))))))
 
 (defun make-action-continuation (interface action)

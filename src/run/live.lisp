@@ -84,15 +84,29 @@ successor. Return SIMULATION."
        (not (simulation-over simulation))
        (or (not journal) (simulation-journal simulation))))
 
+(defun warn-of-namesakes (name other world)
+  "If the robots NAME and OTHER, which start in one cell of WORLD, have the same name in different
+packages, warn once and return true."
+  (when (same-name-p name other)
+    (warn-once (list :namesakes name) world
+               (format nil "~A and ~A start in one cell, where they do not block each other. If you ~
+                            need only one of them, remove the other: (undefine 'robot '~(~A~))."
+                       (qualified-name name) (qualified-name other)
+                       (qualified-name name)))
+    t))
+
+;; A map, such as a shipped one, may have robots of several users who do not know of each other.
 (defun check-world-robots-apart (world started-p)
-  "Signal MISUSE if two robots of WORLD are in one cell or, if STARTED-P is false, start in one."
+  "Signal MISUSE if two robots of WORLD are in one cell or, if STARTED-P is false, start in one. For
+robots of one name in different packages, only warn."
   (check-robots-apart 'simulator
                       (loop for robot in (world-robots world)
                             collect (cons (robot-name robot)
                                           (if started-p
                                               (list (robot-x robot) (robot-y robot))
                                               (robot-start-pose robot))))
-                      (world-map world)))
+                      (world-map world)
+                      (lambda (name other) (warn-of-namesakes name other world))))
 
 (defun simulation-to-start (world seed journal ghosts)
   "Return the simulation of WORLD that is to run live: a new one if the last is over, has passed

@@ -118,13 +118,14 @@ these. Errors name OPERATOR."
 
 ;;; Robots that would be in one cell.
 
-(defun check-robots-apart (operator poses map)
-  "POSES is a list of lists (name x y ...). Signal MISUSE if two of these points are in one cell."
+(defun check-robots-apart (operator poses map &optional (allowed-p (constantly nil)))
+  "POSES is a list of lists (name x y ...). Signal MISUSE if two of these points are in one cell,
+unless ALLOWED-P returns true; its arguments are the two names."
   (let ((names (make-hash-table)))
     (loop for (name x y) in poses
           for index = (map-index map x y)
           for other = (gethash index names)
-          do (when other
+          do (unless (or (null other) (funcall allowed-p other name))
                (reject-use "~(~A~): ~A and ~A would start in one cell, that of ~A. Let one of them ~
                             start elsewhere, or write :ghosts t if robots need not see or block ~
                             each other."
