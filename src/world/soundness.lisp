@@ -146,6 +146,8 @@ MET yet. Add the tags to MET."
 (defun check-group (group)
   (must-hold (and (typep group 'group)
                   (<= 0 (group-skip group))
+                  ;; A gap would be negative.
+                  (<= (group-scale group) 0d0)
                   (<= 0 (* 3 (group-count group)) (length (group-row group)))
                   (plusp (length (group-row group)))
                   (zerop (mod (length (group-row group)) 6))
