@@ -84,7 +84,7 @@
 (test pointing.two-robots-on-one-spot-are-told-apart
   "One ring is around the other; a drag takes the robot whose details are shown; the right button
 leads to both."
-  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1)
+  (run:with-simulation ((ars-worlds:marvin ars-worlds:gofer) :seed 1 :ghosts t)
     (dolist (robot (run:simulation-robots)) (robot:place-robot robot 60.5 38.5 0))
     (dolist (shown (run:simulation-robots))
       (call-with-window

@@ -102,11 +102,11 @@ has begun."
   (not (and (eq name 'command:camera-track) (null code) (zerop answers))))
 
 (defun note-answer (call name results)
-  "Note that the CALL of the command NAME was answered with RESULTS."
+  "Note that CALL, of the command NAME, was answered with RESULTS."
   (let ((answers (gethash call (ride-pending *ride*))))
     (incf (gethash (list name (first results)) (ride-outcomes *ride*) 0))
-    (base:digest-add (ride-calls *ride*) (list (run:simulation-tick time:*simulation*) name
-                                               (princ-to-string results)))
+    (base:digest-add (ride-calls *ride*)
+                     (list (run:simulation-tick time:*simulation*) name (princ-to-string results)))
     (cond ((null answers) (complain "~A was answered after it had ended: ~S" name results))
           ((last-answer-p name (first results) answers) (remhash call (ride-pending *ride*)))
           (t (incf (gethash call (ride-pending *ride*)))))))
@@ -183,8 +183,7 @@ another command, and sometimes fails."
 ;;; What the driver does.
 
 (defun issue-command (name &rest arguments)
-  "Issue the command NAME with ARGUMENTS, which may be wrong or belong to two robots, and a
-continuation of the rider's."
+  "Issue the command NAME with ARGUMENTS, which may be wrong, and a continuation of the rider's."
   (multiple-value-bind (continuation call) (rider name)
     (if (tolerating (base:wrong-argument base:misuse)
           (apply name (append arguments (list continuation))))
@@ -374,14 +373,14 @@ the journal and the digest of the state at its end."
 
 (defun outcomes-of (rides family)
   "Return the lists (name code) of how commands of FAMILY have ended in RIDES."
-  (remove-duplicates
-   (loop for ride in rides
-         append (loop for outcome being the hash-keys of (ride-outcomes ride)
-                      when (and (get (first outcome) 'command::command)
-                                (eq family (command:command-family
-                                            (command:find-command (first outcome)))))
-                        collect outcome))
-   :test #'equal))
+  (flet ((family-of (name) (command:command-family (command:find-command name))))
+    (remove-duplicates
+     (loop for ride in rides
+           append (loop for outcome being the hash-keys of (ride-outcomes ride)
+                        when (and (get (first outcome) 'command::command)
+                                  (eq family (family-of (first outcome))))
+                          collect outcome))
+     :test #'equal)))
 
 (test random-driver.finds-nothing-wrong
   "50,000 commands; most of the error codes of handling come up."

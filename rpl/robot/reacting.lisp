@@ -130,7 +130,7 @@ of the run share a random state."
       (or (runner-lisps-dice runner)
           (setf (runner-lisps-dice runner)
                 (seeded-random-state (+ (simulation-seed simulation)
-                                        ;; How many robots of the run have full names that come before its own.
+                                        ;; How many robots come before it by full name.
                                         (or (position (interface-robot interface)
                                                       (robots-in-order
                                                        (simulation-world simulation)))

@@ -116,8 +116,8 @@ time is carried out first, and a command in the background goes on."
                             (settings-to-apply settings)))))))
 
 (defun post-answer (interface action err results)
-  "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of INTERFACE. Plans
-that are about to end, because their robot is gone, get none."
+  "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of INTERFACE,
+unless the plans are about to end because their robot is gone."
   (let ((settings '()))
     (in-any-case
       (setf settings (apply (action-outcome action) (action-resource action) err results))

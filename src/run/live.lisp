@@ -89,8 +89,9 @@ successor. Return SIMULATION."
 packages, warn once and return true."
   (when (same-name-p name other)
     (warn-once (list :namesakes name) world
-               (format nil "~A and ~A start in one cell, where they do not block each other. If you ~
-                            need only one of them, remove the other: (undefine 'robot '~(~A~))."
+               (format nil "~A and ~A start in one cell, where they do not block each other. If ~
+                            you need only one of them, remove the other: (undefine 'robot ~
+                            '~(~A~))."
                        (qualified-name name) (qualified-name other)
                        (qualified-name name)))
     t))
