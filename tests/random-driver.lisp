@@ -66,8 +66,7 @@
 
 (defstruct (ride (:constructor make-ride (dice)))
   "A random drive: its DICE, the designators it has got, the calls that wait for answers, and what
-has been answered or was wrong. Once it is over, answers lead on to nothing more. CALLS is a digest
-of all calls, in order."
+was answered or was wrong; CALLS digests all calls. Once over, answers lead on to nothing more."
   dice
   (calls (base:make-digest))
   (over-p nil)
