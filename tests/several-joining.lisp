@@ -211,3 +211,65 @@
                                            (run:load-journal older)
                                            (run:load-simulation older)))
                               "several robots" "version 1.10" "record the run anew"))))))
+
+;;; Robots that leave.
+
+(test leaving.leaves-behind-what-was-held
+  (with-pound
+    (eval '(robot:defrobot owl (pound (9 9) 0) :hands (9) :bins (9)))
+    (with-stopped-run (cat :keep t)
+      (pass-ticks-now 2)
+      (let ((owl (robot-called 'owl)))
+        (dolist (part (list (robot:robot-hand owl 0) (robot:robot-storage-bin owl 0)))
+          (world:make-new-thing 'nut part '((:size 1) (:weight 1)))))
+      (pass-ticks-now 1)
+      (ars:undefine 'robot 'owl)
+      (dolist (nut (world:find-things 'nut))
+        (is (eq :floor (world:thing-location nut)))
+        (is (= 9 (world:thing-x nut))))
+      (pass-ticks-now 2)
+      (with-temporary-file (file) (is-true (run:save-simulation file))))))
+
+(test leaving.is-repeated-if-the-definition-is-loaded
+  (with-pound
+    (let (journal digest)
+      (with-stopped-run (cat)
+        (pass-ticks-now 2)
+        (eval '(robot:defrobot owl (pound (9 9) 0)))
+        (pass-ticks-now 2)
+        (ars:undefine 'robot 'owl)
+        (pass-ticks-now 2)
+        (setf journal (run:journal-up-to-now time:*simulation*)
+              digest (run:state-digest)))
+      (is-true (find "ARS-MAGNA.TESTS::OWL" (getf (run:journal-header journal) :definitions)
+                     :key #'second :test #'equal))
+      (eval '(robot:defrobot owl (pound (9 9) 0)))
+      (is (= digest (nth-value 1 (run:replay journal)))))))
+
+(test leaving.of-a-robot-that-joined-before-the-first-tick-is-saved
+  (with-pound
+    (with-messages
+      (unwind-protect
+           (progn
+             (run:simulator 'cat :rate :free :seed 5 :display nil)
+             (time:pause)
+             (eval '(robot:defrobot owl (pound (9 9) 0)))
+             (run:stop-simulator)
+             (pass-ticks-now 2)
+             (ars:undefine 'robot 'owl)
+             (pass-ticks-now 2)
+             (with-temporary-file (file) (is-true (run:save-journal file)))
+             (with-temporary-file (file) (is-true (run:save-simulation file))))
+        (setf time:*simulation* nil world:*world* nil)))))
+
+(test leaving.that-was-rewound-can-be-repeated
+  (with-pound
+    (with-stopped-run (cat :keep t)
+      (pass-ticks-now 4)
+      (ars:undefine 'robot 'dog)
+      (pass-ticks-now 4)
+      (run:rewind 6)
+      (is (= 2 (length (run:simulation-robots))))
+      (is (eq 'dog (eval '(robot:defrobot dog (pound (3 7) 1)))))
+      (is (= 2 (length (run:simulation-robots))))
+      (is (= 1 (robot:robot-angle (robot-called 'dog)))))))

@@ -122,6 +122,8 @@ away. Call this function whenever robots have joined or left WORLD, and after a 
   (let* ((several-p (rest (world-robots world)))
          (robots (robots-in-order world)))
     (arrange-dice world robots)
+    (when (world-timeline world)
+      (setf (agenda-salt (timeline-agenda (world-timeline world))) nil))
     (when (and (world-timeline world) (not several-p))
       (setf (agenda-salt (timeline-agenda (world-timeline world))) nil))
     (if (and several-p (not (world-ghosts-p world)))

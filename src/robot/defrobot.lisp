@@ -159,6 +159,7 @@ value ...), and ATTRIBUTES an object descriptor. Return the robot."
                                     (list :cameras cameras :hands hands :bins bins :parts parts)))
          (robot (ensure-resident-robot blueprint)))
     (register *robots* name blueprint :variable t :value robot)
+    (asking (robot) (call-listeners *robot-hooks* :defined robot))
     (warn-of-angle-in-degrees (definition-title "defrobot" name) (robot-world robot) angle)
     robot))
 
@@ -173,7 +174,17 @@ value ...), and ATTRIBUTES an object descriptor. Return the robot."
                                   the symbol in your package: (:shadow #:~(~A~))"
                              name trouble name name)))))
 
+(defun forget-robot-without-definition (name)
+  "Unbind the variable NAME if its value is a robot of this name whose definition was taken back. A
+run that was rewound still has such a robot."
+  (when (and (null (definition-to-replace name *robots*))
+             (boundp name)
+             (robot-p (symbol-value name))
+             (eq name (robot-name (symbol-value name))))
+    (makunbound name)))
+
 (defun check-robot-variable (name)
+  (forget-robot-without-definition name)
   (when (and (null (definition-to-replace name *robots*))
              (variable-in-use-p name))
     (reject-clause (definition-title "defrobot" name) name

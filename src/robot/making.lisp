@@ -23,7 +23,15 @@
   (remove nil (mapcar #'blueprint-robot (all-blueprints))))
 
 (defun robot-of-current-run (name)
-  (and *world* (typep name '(or symbol string)) (find-robot-named name (world-robots *world*))))
+  "Return the robot of the current run that NAME means, or NIL. Signals MISUSE if NAME can mean
+several robots."
+  (let ((robots (and *world*
+                     (typep name '(or symbol string))
+                     (robots-meant name (world-robots *world*)))))
+    (when (rest robots)
+      (reject-use "~A could be ~{~A~^ or ~}. Give the full name."
+                  name (mapcar #'robot-full-name robots)))
+    (first robots)))
 
 (defun exact-name-p (name blueprint)
   "True if NAME is the symbol that names BLUEPRINT, or the full name of this symbol."
@@ -129,8 +137,8 @@ or outside the map (reading 215)."
                            (and newest (null (robot-retired newest)) (robot-name robot))))))
 
 (define-event *robot-hooks*
-  "Functions called when a robot has joined or left a world whose run may have begun, with :JOINED
-or :LEFT, and the robot.")
+  "Functions called when a robot has joined or left a world whose run may have begun, and when its
+definition has been registered, with :JOINED, :LEFT or :DEFINED, and the robot.")
 
 (defun end-waiting-requests (robot)
   "Perform the requests to ROBOT, which is retired, that wait for the next tick: they end with
@@ -141,8 +149,17 @@ or :LEFT, and the robot.")
                  (withdraw-request request timeline))
         (perform request timeline)))))
 
+(defun leave-things-behind (robot)
+  "Leave what the hands and bins of ROBOT hold where ROBOT is."
+  (permitting-changes ((robot-world robot))
+    (loop for hand across (robot-hands robot)
+          do (dolist (thing (copy-list (hand-contents hand))) (set-down hand thing)))
+    (loop for bin across (robot-bins robot)
+          do (dolist (thing (copy-list (storage-bin-contents bin)))
+               (move-thing thing (robot-x robot) (robot-y robot))))))
+
 (defun remove-robot (robot reason)
-  "Retire ROBOT for REASON, end what it does, and take it from its world."
+  "Retire ROBOT for REASON, end what it does, and take it from its world. What it holds stays there."
   (let ((world (robot-world robot)))
     (deferring-interrupts
       (in-any-case
@@ -150,6 +167,7 @@ or :LEFT, and the robot.")
         (call-run-enders robot)
         (end-waiting-requests robot)
         (interrupt-resources (timeline-of robot) (robot-resources robot))
+        (leave-things-behind robot)
         (take-body robot)
         (setf (world-robots world) (remove robot (world-robots world)))
         (arrange-robots world)

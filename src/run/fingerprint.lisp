@@ -195,11 +195,14 @@ is."
 
 (defun merge-definitions (before after)
   "Return the definitions BEFORE, followed by the definitions AFTER that are not among BEFORE. The
-number of a definition that has changed becomes :CHANGED."
+number of a definition that has changed becomes :CHANGED. A robot that is no longer defined has only
+left the run."
   (let ((now (current-definitions before)))
     (append (loop for definition in before
                   for (kind name number) = definition
-                  collect (if (unchanged-p definition now)
+                  collect (if (or (unchanged-p definition now)
+                                  (and (same-name-p :robot kind)
+                                       (not (member definition now :test #'same-definition-p))))
                               definition
                               (list kind name :changed)))
             (remove-if (lambda (definition) (member definition before :test #'same-definition-p))

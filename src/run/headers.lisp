@@ -85,7 +85,9 @@ begins now."
 (defun joining-robots (journal)
   "Return lists (name kind), full names, of the robots that join the run of JOURNAL later."
   (loop for (nil operator name kind) in (journal-entries journal)
-        when (eq 'robot-joined operator) collect (list name kind)))
+        ;; Names that a file may have instead are refused when the entry is repeated.
+        when (and (eq 'robot-joined operator) (stringp name) (stringp kind))
+          collect (list name kind)))
 
 (defun journal-robot-names (journal)
   "Return the names, symbols, of the robots in the run of JOURNAL. Signals UNKNOWN-NAME."

@@ -67,6 +67,7 @@
          (simulation (and timeline (timeline-run timeline))))
     (when (and simulation (not (simulation-over simulation)))
       (ecase change
+        (:defined (when (simulation-journal simulation) (merge-journal-definitions simulation)))
         (:joined (record-joining robot simulation))
         (:left (record-leaving robot simulation))))))
 

@@ -190,6 +190,14 @@ since the journal was begun. No tick of SIMULATION has passed yet."
           (journal-header journal) header)
     (update-journal-ghosts simulation)))
 
+(defun merge-journal-definitions (simulation)
+  "Add the definitions that SIMULATION depends on now to its journal. Definitions may have changed
+since the journal was begun."
+  (let* ((journal (simulation-journal simulation)) (header (copy-list (journal-header journal))))
+    (setf (getf header :definitions) (merge-definitions (getf header :definitions)
+                                                        (definitions-depended-on simulation))
+          (journal-header journal) header)))
+
 (defun journal-up-to-now (simulation)
   "Return a copy of the journal of SIMULATION, up to the current tick unless the journal is full.
 The copy does not grow when SIMULATION continues. Signals MISUSE if SIMULATION keeps no journal."
@@ -199,11 +207,7 @@ The copy does not grow when SIMULATION continues. Signals MISUSE if SIMULATION k
                                   without :journal nil."))))
     (when (eq simulation *simulation*) (record-settings simulation))
     (unless (journal-full-p journal) (setf (journal-end journal) (simulation-tick simulation)))
-    ;; Definitions may have changed since it began.
-    (let ((header (copy-list (journal-header journal))))
-      (setf (getf header :definitions) (merge-definitions (getf header :definitions)
-                                                          (definitions-depended-on simulation))
-            (journal-header journal) header))
+    (merge-journal-definitions simulation)
     (copied-journal journal (simulation-tick simulation))))
 
 ;;;; Changes from outside

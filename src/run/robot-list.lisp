@@ -170,6 +170,8 @@ cell."
 
 (defun position-form (form environment)
   "Return a form for the value of :at. FORM is (X Y), two forms, or a form that returns a list."
+  (when (and (proper-list-p form) (every #'realp form))
+    (setf form `',form))
   (if (and (proper-list-p form)
            (= 2 (length form))
            (not (eq 'quote (first form)))
@@ -202,14 +204,15 @@ in a macro, whose ENVIRONMENT is given."
 (defun names-in-robots (elements)
   "Return the names of the robots in ELEMENTS, a list of names and entries, that can be variables."
   (loop for element in elements
-        for name = (if (entry-form-p element)
+        for name = (if (and (entry-form-p element) (oddp (length element)))
                        (strip-quote (getf (rest element) :as (first element)))
                        element)
         when (and (symbolp name) (variable-name-p name)) collect name))
 
 (defun robot-list-form (robots environment)
   "ROBOTS are the robots of WITH-SIMULATION. Return a form for them, and the names to bind."
-  (cond ((robots-expression-p robots environment) (values robots '()))
+  (cond ((not (or (atom robots) (proper-list-p robots))) (values `',robots '()))
+        ((robots-expression-p robots environment) (values robots '()))
         ((and (consp robots) (eq 'quote (first robots)))
          (values robots (names-in-robots (ensure-list (second robots)))))
         ((not (listp robots)) (values `',robots (names-in-robots (list robots))))

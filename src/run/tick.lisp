@@ -26,10 +26,9 @@ begun; skip the phases up to this number. PLACE is 0 before the first phase and 
   (setf (timeline-ticking-p timeline) t
         (timeline-moments timeline) 0
         (world-writer world) (current-thread))
-  (when (or (world-dice-names world) (agenda-salt (timeline-agenda timeline)))
+  (when (world-dice-names world)
     (setf (agenda-salt (timeline-agenda timeline))
-          (and (world-dice-names world)
-               (turn-salt world (1+ (timeline-tick timeline))))))
+          (turn-salt world (1+ (timeline-tick timeline)))))
   (begin-tick-dice (timeline-tick-dice timeline) (world-seed world) (timeline-tick timeline)))
 
 (defun end-world-changes (timeline world)

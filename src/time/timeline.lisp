@@ -209,6 +209,7 @@ first; in each group, the oldest comes first."
   "At the end of this tick of TIMELINE, call the function named FUNCTION, after earlier functions."
   (push (cons function arguments) (timeline-notifications timeline)))
 
+(declaim (inline notifications-in-order))
 (defun notifications-in-order (notifications salt)
   "Return NOTIFICATIONS, the newest first, in the order in which they are made: the oldest first or,
 if there are several robots, by the turns of the robots in the tick with SALT."
