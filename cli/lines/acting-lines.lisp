@@ -30,7 +30,8 @@
     (let ((own (asker-for account)) (*asker* (asker-for account :text "GO-TO")))
       (robot-go-to (session-robot) x y
                    (lambda (err robot)
-                     (let ((*asker* own) (*request-origin* own))
+                     (let ((*asker* own) (*request-origin* own)
+                           (*reported-robot* (robot-name robot)))
                        (if (eq simulation (latest-successor simulation))
                            (report-arrival err robot point)
                            (warn-of-cancelled-drive point simulation)))
