@@ -21,15 +21,19 @@ that signals the error, such as a kicker."
   (let ((run (message-run message)))
     (if run (simulation-tick run) 0)))
 
+(defun message-key (message)
+  "Return the key of MESSAGE in tables of counts: its robot and its text."
+  (cons (message-robot message) (message-text message)))
+
 (defun tally-for (message counts)
-  (let* ((text (message-text message))
+  (let* ((key (message-key message))
          (code (let ((item (faulty-code-item message)))
                  (and item (recurring-function item))))
-         (tally (gethash text counts)))
+         (tally (gethash key counts)))
     (cond ((and tally (eq code (tally-code tally)) (<= (tally-tick tally) (message-tick message)))
            tally)
           (t (when (< *message-limit* (hash-table-count counts)) (clrhash counts))
-             (setf (gethash text counts) (make-tally :code code))))))
+             (setf (gethash key counts) (make-tally :code code))))))
 
 (defun power-of-ten-p (number)
   (or (= 1 number)
@@ -43,7 +47,7 @@ that signals the error, such as a kicker."
 
 (defun repetition-text (message counts)
   "Return text on how often MESSAGE was reported, from the table COUNTS; NIL if not often."
-  (let* ((tally (and (eq :error (message-kind message)) (gethash (message-text message) counts)))
+  (let* ((tally (and (eq :error (message-kind message)) (gethash (message-key message) counts)))
          (count (if tally (tally-count tally) 0))
          (item (faulty-code-item message)))
     (when (<= 3 count)
@@ -54,14 +58,14 @@ that signals the error, such as a kicker."
               (and item (stop-recurring-remedy item))))))
 
 (defun reset-line-error-counts (counts)
-  (maphash (lambda (text tally) (unless (tally-code tally) (remhash text counts))) counts))
+  (maphash (lambda (key tally) (unless (tally-code tally) (remhash key counts))) counts))
 
 (defun merge-counts (counts others)
   "Raise the counts in the table COUNTS that are lower than in the table OTHERS."
-  (maphash (lambda (text tally)
-             (let ((own (gethash text counts)))
+  (maphash (lambda (key tally)
+             (let ((own (gethash key counts)))
                (when (or (null own) (< (tally-count own) (tally-count tally)))
-                 (setf (gethash text counts) (copy-tally tally)))))
+                 (setf (gethash key counts) (copy-tally tally)))))
            others))
 
 ;;; Plans may give more messages than a user can read.
@@ -83,7 +87,7 @@ between, after which a hint says how to hide them.")
   (terminal-p nil :type boolean :read-only t)
   ;; Messages from commands of plans and programs are hidden.
   (quiet-p nil :type boolean)
-  ;; The counts of errors, by text, as above: any thread may report, so the lock guards them.
+  ;; The counts of errors, by robot and text, as above: any thread may report, so the lock guards them.
   (error-counts (make-hash-table :test 'equal) :type hash-table :read-only t)
   ;; How many messages of others' commands were shown since the last line; after too many, in all.
   (others-shown 0 :type fixnum)
