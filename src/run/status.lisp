@@ -113,19 +113,27 @@ slots with the roles :STATE and :MEMORY."))
            :failed (last-failure robot)
            :designators (mapcar #'designator-status (live-designators robot))))))
 
+(defun default-robot (simulation)
+  "Return the robot of SIMULATION that the prompt commands, else its first robot, or NIL."
+  (let ((robots (simulation-robots simulation)))
+    (if (rest robots)
+        (or (find (funcall *default-robot-function*) robots) (first robots))
+        (first robots))))
+
 (defun resolve-robot (robot operator)
-  "Return the robot that ROBOT means: a robot, the name of a robot, or NIL for the first robot of
-the current simulation. Errors name OPERATOR."
+  "Return the robot that ROBOT means: a robot, the name of a robot, or NIL for the robot that the
+prompt commands, else the first robot of the current simulation. Errors name OPERATOR."
   (if robot
       (find-robot robot)
-      (or (first (simulation-robots (current-simulation)))
+      (or (default-robot (current-simulation))
           (reject-use "~(~A~): there is no robot in ~A." operator
                       (simulation-name (current-simulation))))))
 
 (addition status)
 (defun status (&optional robot)
   "Return the state of ROBOT, which the prompt command STATUS prints, as a plist of plain data.
-ROBOT is a robot or its name, by default the first of the current simulation. The properties:
+ROBOT is a robot or its name, by default the robot that the prompt commands, or else the first of
+the current simulation. The properties:
 - :ROBOT, :MAP, :TICK
 - :POSITION, :LAST-MOVE and :ESTIMATED-LAST-MOVE, lists (x y) in metres
 - :ANGLE in radians, :SPEED in metres and :TURN-ANGLE in radians a tick
