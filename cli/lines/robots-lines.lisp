@@ -61,7 +61,6 @@ next line waits for all of them, where lines wait for commands. REPEAT 3 ALL: TU
 command for all robots; ALL: REPEAT 3 TURN 1 is for one robot after the other.")
     "Give the command CMD to each robot of the run. What it prints is below the name of each robot.
 An error of one robot does not stop the others."
-  (let ((robot (session-robot)))
+  (let ((world (world-of-prompt)))
     (check-line-for-robots cmd)
-    (run-line-for-robots session cmd
-                         (mapcar #'robot-name (robots-in-order (robot-world robot))))))
+    (run-line-for-robots session cmd (mapcar #'robot-name (robots-in-order world)))))

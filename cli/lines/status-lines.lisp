@@ -143,13 +143,15 @@ line tells if no ticks pass now. STATUS ALL shows each robot of the run. In Lisp
   (let ((location (thing-location thing)))
     (if (eq location :floor)
         (format nil "@ (~,2F,~,2F)" (thing-x thing) (thing-y thing))
-        (format nil "in ~A" (location-name location)))))
+        (format nil "in ~A" (if (rest (simulation-robots *simulation*))
+                                (location-phrase location)
+                                (location-name location))))))
 
 ;; As reading 206 says.
 (define-line "THINGS" (session)
     (:seeing)
     "List all things in the world with their locations and attributes."
-  (let ((world (robot-world (session-robot))))
+  (let ((world (world-of-prompt)))
     (with-time-stopped
       (do-things (thing world)
         (write-trimmed-line "~A ~A" thing (thing-place-text thing))

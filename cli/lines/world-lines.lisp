@@ -66,7 +66,8 @@
   (dolist (robot (and *simulation* (simulation-robots *simulation*)))
     (multiple-value-bind (x y) (robot-position robot)
       (write-trimmed-line "~16A @ (~,2F,~,2F)~:[~; commanded~]" robot x y
-                          (eq robot (session-robot))))))
+                          (eq robot (or (robot-of-prompt)
+                                        (first (simulation-robots *simulation*))))))))
 
 (defun reject-robot-elsewhere (name)
   "Signal BAD-LINE with a text that tells how to get to the robot NAME in another world."

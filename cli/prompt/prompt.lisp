@@ -44,14 +44,51 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
   (handler-case (read-input session (if (session-other-breaks session) "Break> " "Robot> "))
     (line-too-long (condition) (values (line-outline condition) condition))))
 
+(defun robot-departed-p (session)
+  "True if the robot that SESSION commands has left the run, and other robots are in it."
+  (let ((run (session-commanded-run session)))
+    (and run *simulation* (not (simulation-over *simulation*))
+         (eq *simulation* (latest-successor run))
+         (simulation-robots *simulation*)
+         (null (robot-of-prompt)))))
+
+(defun note-commanded-run (session)
+  "Record the run in which SESSION commands *PROMPT-ROBOT*, if the robot is in the run."
+  (when (and *simulation* *prompt-robot* (robot-of-prompt))
+    (setf (session-commanded-run session) *simulation*)))
+
+(defun call-after-departure (session function)
+  "Warn that the robot of SESSION has left the run. Call FUNCTION, which runs a line that commands
+no other robot in its place. Later lines command the first robot of the run."
+  (let ((*departed-robot* *prompt-robot*) (next (first (simulation-robots *simulation*))))
+    (warning-set (format nil "~A is no longer in this run: the lines command ~A now."
+                         *departed-robot* next))
+    (show-messages session)
+    (unwind-protect (funcall function)
+      (when (eq *prompt-robot* *departed-robot*)
+        (setf *prompt-robot* (robot-name next))))))
+
+(defun call-for-present-robot (session function)
+  "Call FUNCTION, which runs a line of SESSION that commands no robot that has left the run."
+  (if (robot-departed-p session)
+      (call-after-departure session function)
+      (funcall function)))
+
 (defun select-run-and-robot (session)
   "Make SESSION command its robot, in a run that continues, and show messages of that run."
   (unless (in-trial-or-fork-p session)
     (when (session-place session) (funcall (session-place session)))
     (continue-in-next-run session))
   (setf (session-robot-name session) (or *prompt-robot* (name-of-robot-commanded)))
+  (note-commanded-run session)
   (follow-simulation session)
   (update-plots session))
+
+(defun run-line-read (session text trouble)
+  "Run the line TEXT of SESSION. TROUBLE is a condition LINE-TOO-LONG, or NIL."
+  (let ((text (begin-line-without-comments session text trouble)))
+    (flet ((run () (run-with-time-notice session text)))
+      (if (nothing-to-run-p text) (run) (call-for-present-robot session #'run)))))
 
 (defun run-next-line (session)
   "Read a line of SESSION and run it; at the end of input, end the session."
@@ -62,7 +99,7 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
     (cond (text
            ;; While it was typed, its run may have ended and another begun.
            (unless (session-other-breaks session) (select-run-and-robot session))
-           (run-with-time-notice session (begin-line-without-comments session text trouble)))
+           (run-line-read session text trouble))
           (t (setf (session-over-p session) t
                    (reader-ended-p (session-reader session))
                    (not (session-terminal-p session)))))))
@@ -114,7 +151,7 @@ time stands still, report that the line waits."
          (*completer* (lambda (text point) (completions-in session text point)))
          (*user-can-resume-p* (session-terminal-p session))
          (*default-robot-function* #'session-robot)
-         (*commanded-robot-hook* #'robot-of-prompt)
+         (*commanded-robot-hook* #'commanded-robot-or-reject)
          (*query-io* (make-two-way-stream *standard-input* *standard-output*)))
     (funcall function)))
 

@@ -104,6 +104,8 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
   ;; A function to call before each line is read, outside of trials and forks, or NIL: it makes sure
   ;; that the right robot is commanded, as a window does for its own.
   (place nil :type (or null function) :read-only t)
+  ;; The run in which it last commanded the robot *PROMPT-ROBOT*, or NIL.
+  (commanded-run nil)
   ;; The run that it was in when it last read a line; see CALL-BEFORE-LINE-HOOKS.
   (whereabouts nil)
   ;; The trial that it is in, or NIL, and how many nested forks it is in.
@@ -189,13 +191,34 @@ ARS-USER. COLOR is :ALWAYS, :NEVER, or :AUTO (on a terminal, unless the environm
 that Lisp at the prompt runs may have no such robot."
   (find *prompt-robot* (simulation-robots *simulation*) :key #'robot-name))
 
+(defvar *departed-robot* nil
+  "The name of the robot that has left the run before the line that is running, or NIL.")
+
+(defun check-robot-not-departed ()
+  "Signal BAD-LINE if the robot that the prompt commands has left the run before this line."
+  (when (and *departed-robot* (eq *departed-robot* *prompt-robot*))
+    (reject-line "~A is no longer in this run, and this line is for no other robot. Choose with ~
+                  ROBOT, or type the line again to command ~A."
+                 *departed-robot* (first (simulation-robots *simulation*)))))
+
+(defun commanded-robot-or-reject ()
+  "Return the robot that plans of the prompt drive by default, or NIL. Signals BAD-LINE."
+  (check-robot-not-departed)
+  (robot-of-prompt))
+
 (defun session-robot ()
-  "Return the robot that the prompt commands. Signals BAD-LINE without a robot or after the run."
+  "Return the robot that the prompt commands. Signals BAD-LINE without a robot, after the run, and
+if the robot has left the run before this line."
   (check-run-not-over)
+  (check-robot-not-departed)
   (let ((robots (and *simulation* (simulation-robots *simulation*))))
     (or (and robots (robot-of-prompt))
         (first robots)
         (reject-line "There is no robot here. WORLD lists worlds; WORLD name starts a world."))))
+
+(defun world-of-prompt ()
+  "Return the world of the current run. Signals BAD-LINE without a robot or after the run."
+  (let ((*departed-robot* nil)) (robot-world (session-robot))))
 
 (defun size-of-window (session)
   (funcall (or (console-window (session-console session)) #'window-size)))
