@@ -166,6 +166,53 @@ are symbols. Only the first twin has a hand."
                                            (search "\"robot\"" object)))
                      (objects-of-script "turn 1"))))
 
+;;; The commanded robot, and the others.
+
+(test robots.that-leave-the-run-are-replaced-with-a-warning
+  "The first line for the robot that has left is carried out by no other robot."
+  (flet ((lines-after-departure (&rest lines)
+           (apply #'type-to-twins "robot loner" "turn 1"
+                  "(progn (setf ars-magna.cli:*prompt-robot* :gone) (values))" "" lines)))
+    (let ((lines (lines-after-departure "turn 1" "turn 1")))
+      (is-true (has-words-p (joined lines) "GONE is no longer in this run: the lines command "
+                            "GONE is no longer in this run, and this line is for no other robot")
+               "~A" lines)
+      (is (= 2 (count-if (lambda (line) (search "Robot turned" line)) lines)) "~A" lines)
+      (is (string= "robot-turn: Robot turned 1.00" (first (last lines)))))
+    (let ((lines (lines-after-departure "robot twins-b::twin" "turn 1" "robot")))
+      (is-false (find "*ERROR*" lines :test #'search) "~A" lines)
+      (is-true (find "TWINS-B::TWIN    @ (3.50,6.50) commanded" lines :test #'string=)))
+    (let ((lines (lines-after-departure "all: turn 2")))
+      (is-false (find "*ERROR*" lines :test #'search) "~A" lines)
+      (is (= 3 (count-if (lambda (line) (search "Robot turned 2.00" line)) lines))))))
+
+(test status.in-lisp-is-of-the-commanded-robot
+  (is (equal '("LONER" "LONER" "LONER" "TWINS-A::TWIN" "TWIN" "TWINS-B::TWIN" "TWIN")
+             (type-to-twins "robot loner" "(out (string (getf (status) :robot)) t)"
+                            "all: (out (string (getf (status) :robot)) t)"))))
+
+(test go-to.names-the-robot-in-its-messages
+  (with-names ("MARVIN" "GOFER")
+    (let ((lines (type-to 'ars-worlds:marvin "all: go-to 18 10")))
+      (is (= 1 (count-if (lambda (line) (eql 0 (search "gofer: go-to: Robot is near" line)))
+                         lines)))
+      (is (= 1 (count-if (lambda (line) (eql 0 (search "go-to: Robot is near" line))) lines))))))
+
+(test repeated-errors.are-counted-for-each-robot
+  (let ((counts (make-hash-table :test 'equal)))
+    (flet ((hidden-p (robot)
+             (let ((definitions:*reported-robot* robot))
+               (cli::count-repeated-message (definitions:make-message :error '("Blocked"))
+                                            counts))))
+      (is (equal '(nil nil nil t) (loop repeat 4 collect (and (hidden-p 'twin) t))))
+      (is-false (hidden-p 'loner)))))
+
+(test things.in-hands-are-told-with-the-robot
+  (in-twin-shed (one two loner)
+    (let ((thing (world:make-new-thing 'gift (robot:robot-hand one 0)
+                                       '((:color world:red) (:size 1)))))
+      (is (string= "in hand 0 of TWINS-A::TWIN" (cli::thing-place-text thing))))))
+
 ;;; Who is in the way.
 
 (test blocked.names-the-robot-in-the-way
