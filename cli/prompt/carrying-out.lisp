@@ -268,32 +268,20 @@ terminal, signal TROUBLE, because the prompt could not be printed, either."
       (handler-case (report-session-error session (text-with-advice condition))
         (error (trouble) (report-printing-error session trouble))))))
 
-(defun running-command-name (robot)
-  (let ((event (and (carries-out-command-p robot) (resource-event robot))))
-    (and (typep event 'operation)
-         (string-upcase (command-prompt-name (operation-command event))))))
-
-(defun command-in-progress (session)
-  "Return the robot that SESSION commands, and the name of the line or command that the robot
-carries out; NIL if the robot carries out nothing."
-  (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
-         (name (and robot (or (some #'job-name (jobs-under-way session))
-                              (running-command-name robot)))))
-    (and name (values robot name))))
-
 (defun ongoing-work-text (session)
   "Return text for the user of SESSION after an interrupted line. The text says what continues in
 the simulator and how to end that; or, if nothing continues, how to leave the prompt. During a
 break, the text says how to answer. In a trial, it is empty."
   (multiple-value-bind (robot command) (command-in-progress session)
-    (let ((plans-p (notevery #'plan-ending-p (plans))))
+    (let ((plans-p (notevery #'plan-ending-p (plans))) (others (other-robots-at-work robot)))
       (cond ((restart-choices-text session)
              (format nil " Answer the break by one of ~A." (restart-choices-text session)))
             ((session-trial session) "")
-            ((or robot plans-p)
+            ((or robot others plans-p)
              (format nil "~@[ ~A continues with ~]~@[~A; STOP ends that.~]~
+                          ~@[ Other robots at work: ~{~A~^, ~}; ALL: STOP stops all robots.~]~
                           ~:[~; Plans continue; STOP-PLAN ends them.~]"
-                     robot command plans-p))
+                     robot command others plans-p))
             (t " QUIT leaves.")))))
 
 (defun running-code-owner-text (&optional (calls *user-calls*))

@@ -191,3 +191,23 @@ returns the value of OUTCOME-OF-JOBS for these jobs."
            (and (session-lisp-p session)
                 (waits-for-resume-p session)
                 (not (no-command-pending-p))))))
+
+;;; What continues after an interrupted line.
+
+(defun running-command-name (robot)
+  (let ((event (and (carries-out-command-p robot) (resource-event robot))))
+    (and (typep event 'operation)
+         (string-upcase (command-prompt-name (operation-command event))))))
+
+(defun command-in-progress (session)
+  "Return the robot that SESSION commands, and the name of the line or command that the robot
+carries out; NIL if the robot carries out nothing."
+  (let* ((robot (and *simulation* (null (simulation-over *simulation*)) (session-robot)))
+         (name (and robot (or (some #'job-name (jobs-under-way session))
+                              (running-command-name robot)))))
+    (and name (values robot name))))
+
+(defun other-robots-at-work (robot)
+  "Return the robots of the current run, except ROBOT, that carry out commands."
+  (and *simulation* (not (simulation-over *simulation*))
+       (remove-if-not #'running-command-name (remove robot (simulation-robots *simulation*)))))

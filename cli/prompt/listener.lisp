@@ -87,7 +87,7 @@ between, after which a hint says how to hide them.")
   (terminal-p nil :type boolean :read-only t)
   ;; Messages from commands of plans and programs are hidden.
   (quiet-p nil :type boolean)
-  ;; The counts of errors, by robot and text, as above: any thread may report, so the lock guards them.
+  ;; The counts of errors, by robot and text: any thread may report, so the lock guards them.
   (error-counts (make-hash-table :test 'equal) :type hash-table :read-only t)
   ;; How many messages of others' commands were shown since the last line; after too many, in all.
   (others-shown 0 :type fixnum)

@@ -47,7 +47,7 @@ is too long, TEXT is an outline of the line, and TROUBLE is the condition LINE-T
 (defun robot-departed-p (session)
   "True if the robot that SESSION commands has left the run, and other robots are in it."
   (let ((run (session-commanded-run session)))
-    (and run *simulation* (not (simulation-over *simulation*))
+    (and run *prompt-robot* *simulation* (not (simulation-over *simulation*))
          (eq *simulation* (latest-successor run))
          (simulation-robots *simulation*)
          (null (robot-of-prompt)))))
