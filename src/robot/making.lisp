@@ -159,7 +159,7 @@ definition has been registered, with :JOINED, :LEFT or :DEFINED, and the robot."
                (move-thing thing (robot-x robot) (robot-y robot))))))
 
 (defun remove-robot (robot reason)
-  "Retire ROBOT for REASON, end what it does, and take it from its world. What it holds stays there."
+  "Retire ROBOT for REASON, end what it does, and take it from its world. What it holds stays."
   (let ((world (robot-world robot)))
     (deferring-interrupts
       (in-any-case
