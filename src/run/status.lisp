@@ -116,7 +116,8 @@ slots with the roles :STATE and :MEMORY."))
 (defun default-robot (simulation)
   "Return the robot of SIMULATION that the prompt commands, else its first robot, or NIL."
   (let ((robots (simulation-robots simulation)))
-    (if (rest robots)
+    ;; After the run, the prompt commands no robot.
+    (if (and (rest robots) (not (simulation-over simulation)))
         (or (find (funcall *default-robot-function*) robots) (first robots))
         (first robots))))
 
