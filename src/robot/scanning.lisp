@@ -162,9 +162,10 @@ Bodies of other robots count as things."
                    (and matches (list (cons thing readings))))))
 
 (defun viewing-distance (camera thing)
-  (if (camera-location camera)
-      0d0
-      (multiple-value-call #'distance-to (camera-robot camera) (thing-position thing))))
+  (cond ((camera-location camera) 0d0)
+        ((eq :floor (thing-location thing))
+         (distance-to (camera-robot camera) (thing-x thing) (thing-y thing)))
+        (t (multiple-value-call #'distance-to (camera-robot camera) (thing-position thing)))))
 
 (defun thing-sighting (camera type thing readings dice)
   (multiple-value-bind (x y) (thing-position thing)

@@ -29,8 +29,10 @@
 
 (defun distance-to (robot x y)
   "Return the distance from ROBOT to (X,Y), in metres."
-  (let ((dx (- x (robot-x robot))) (dy (- y (robot-y robot))))
-    (sqrt (+ (* dx dx) (* dy dy)))))
+  (let* ((dx (- (double x) (robot-x robot))) (dy (- (double y) (robot-y robot)))
+         (square (+ (* dx dx) (* dy dy))))
+    (declare (type double-float dx dy) (type (double-float 0d0) square))
+    (sqrt square)))
 
 (defun bearing-to (robot x y)
   "Return the true direction from ROBOT to (X,Y), in radians."

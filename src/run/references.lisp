@@ -82,17 +82,13 @@ SIMULATION to the simulation."
 
 (defun robot-in (simulation name)
   "Return the robot in SIMULATION that NAME, the name in a reference, means."
-  (let* ((robots (simulation-robots simulation)) (robot (find-robot-named name robots)))
-    (cond ((null robot)
+  (let* ((robots (simulation-robots simulation)) (meant (robots-meant name robots)))
+    (cond ((null meant)
            (reject-name "robot in this simulation" name (mapcar #'robot-name robots)))
-          ((and (not (symbolp name))
-                (not (string-equal name (robot-full-name robot)))
-                (string-equal (robot-label robot) (robot-full-name robot)))
+          ((rest meant)
            (reject-use "Several robots in this run are called ~A: ~{~A~^, ~}. Give the full name."
-                       name (mapcar #'robot-full-name
-                                    (remove name robots :key #'robot-name
-                                                        :test-not #'same-name-p))))
-          (t robot))))
+                       name (mapcar #'robot-full-name meant)))
+          (t (first meant)))))
 
 (define-dereference :simulation ()
   simulation)
