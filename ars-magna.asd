@@ -46,8 +46,8 @@
                  (:file "schedule") (:file "soundness")))
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "bodies") (:file "odometer")
-                 (:file "sight") (:file "designator") (:file "motion") (:file "tracks") (:file "inside")
-                 (:file "making") (:file "defrobot") (:file "own-changes") (:file "rays")
+                 (:file "sight") (:file "designator") (:file "motion") (:file "tracks")
+                 (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes") (:file "rays")
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "tending")
                  (:file "soundness")))
    (:module "src/command" :serial t
@@ -61,7 +61,8 @@
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "run")
                  (:file "plain-data") (:file "references") (:file "robot-list")
-                 (:file "journal") (:file "fingerprint") (:file "past") (:file "headers") (:file "joining")
+                 (:file "journal") (:file "fingerprint") (:file "past") (:file "headers")
+                 (:file "joining")
                  (:file "tick") (:file "environments")
                  (:file "forking") (:file "passing") (:file "leaving") (:file "headless")
                  (:file "live") (:file "residents") (:file "sealed-lines") (:file "journal-text")

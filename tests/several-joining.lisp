@@ -273,3 +273,11 @@
       (is (eq 'dog (eval '(robot:defrobot dog (pound (3 7) 1)))))
       (is (= 2 (length (run:simulation-robots))))
       (is (= 1 (robot:robot-angle (robot-called 'dog)))))))
+
+(test leaving.robots-have-bodies-that-can-be-printed
+  (with-pound
+    (with-stopped-run (cat)
+      (let ((body (robot:robot-body (robot-called 'dog))))
+        (ars:undefine 'robot 'dog)
+        (is (null (world:thing-location body)))
+        (is (equal "#<BODY DOG>" (prin1-to-string body)))))))

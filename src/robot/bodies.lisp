@@ -3,7 +3,7 @@
 (in-package :ars-magna.robot)
 
 (export '(robot-full-name robot-label name-label find-robot-named robots-meant arrange-robots
-          robots-in-order robot-at occupant-text turn-salt))
+          robots-in-order sorted-by-full-name robot-at occupant-text turn-salt))
 
 ;;; A robot alone in its world uses the world's dice and has no body, as in the manual. From two
 ;;; robots on, each robot has its own dice, keyed by its full name, and a body, unless the world's
@@ -46,16 +46,16 @@ without package. A name without package means the first robot with this name."
   (first (robots-meant name robots)))
 
 (defun sorted-by-full-name (robots)
+  "Return a list of ROBOTS, sorted by their full names."
   (flet ((named (robot) (cons (robot-full-name robot) robot)))
     (mapcar #'cdr (sort (mapcar #'named robots) #'string< :key #'car))))
 
 (defun robots-in-order (world)
-  "Return a list of the robots in WORLD, sorted by their full names. Do not alter the list."
-  (let ((robots (world-robots world)))
-    (if (null (rest robots))
-        robots
-        (or (world-roster world)
-            (setf (world-roster world) (sorted-by-full-name robots))))))
+  "Return a list of the robots in WORLD, sorted by their full names. Any thread may call this
+function. Do not alter the list."
+  (if (world-dice-names world)
+      (world-roster world)
+      (world-robots world)))
 
 (defmethod parts-to-digest ((world world) (parts list))
   (if (and (rest parts) (robot-p (first parts)))
@@ -89,12 +89,18 @@ or :manipulations. They are the world's dice if ROBOT is alone in its world; see
 
 ;;; Bodies.
 
+(defun body-label (body)
+  "Return the name of the robot of BODY as a string, also after BODY was removed."
+  (if (body-robot body)
+      (robot-label (body-robot body))
+      (symbol-name (thing-name body))))
+
 (defmethod reference ((body body))
-  (list :body (robot-label (body-robot body))))
+  (list :body (body-label body)))
 
 (defmethod print-object ((body body) stream)
-  (print-named body stream (robot-label (body-robot body))
-               (concatenate 'string "BODY " (robot-label (body-robot body)))))
+  (print-named body stream (body-label body)
+               (concatenate 'string "BODY " (body-label body))))
 
 (defun give-body (robot)
   (setf (robot-body robot)
@@ -118,12 +124,10 @@ or :manipulations. They are the world's dice if ROBOT is alone in its world; see
 (defun arrange-robots (world)
   "The robots of WORLD have changed. Give them dice and bodies if there are several, else take both
 away. Call this function whenever robots have joined or left WORLD, and after a reset."
-  (setf (world-roster world) '())
   (let* ((several-p (rest (world-robots world)))
-         (robots (robots-in-order world)))
+         (robots (sorted-by-full-name (world-robots world))))
+    (setf (world-roster world) robots)
     (arrange-dice world robots)
-    (when (world-timeline world)
-      (setf (agenda-salt (timeline-agenda (world-timeline world))) nil))
     (when (and (world-timeline world) (not several-p))
       (setf (agenda-salt (timeline-agenda (world-timeline world))) nil))
     (if (and several-p (not (world-ghosts-p world)))

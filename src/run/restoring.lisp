@@ -85,7 +85,7 @@ of each number, or NIL for an external object."
                   (kind-slot-reader field) (kind-slot-writer field)))
 
 (defparameter *newer-slots*
-  '((ars-magna.world:world "GHOSTS-P" "DICE-NAMES")
+  '((ars-magna.world:world "GHOSTS-P" "DICE-NAMES" "ROSTER")
     (ars-magna.world:stock "BODIES")
     (ars-magna.robot:robot "BODY" "DICE-BASE" "KEY" "START"))
   "Slots that versions before 1.11 did not save, as lists (type name...). Runs with one robot do not

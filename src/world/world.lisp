@@ -20,6 +20,7 @@
    (ghosts-p nil boolean "the world's robots neither block nor see each other" :addition)
    (dice-names '() list "the full names of the robots that have their own dice, sorted; () if there
 is one robot" :export)
+   (roster '() list "the world's robots, sorted by full name" :export)
    (kicker-generation 0 fixnum "the *KICKER-GENERATION* of the kicker groups" :export)
    (timeline nil t "the timeline of the world, once there is one; the layer above keeps it" :export)
    (move-watchers '() list
@@ -42,7 +43,6 @@ in" :part)
    (writer nil t "the thread that is changing the world, or NIL" :export))
   ;; While it is NIL, each tick checks.
   (:link
-   (roster '() list "the world's robots, sorted by full name; () until it is needed" :export)
    (settled-p nil boolean "a tick has nothing to settle in the world: no robot has a designator, an
 ended track, a part inside of something, a hand with two things in it or with a watched
 grip" :export)))
