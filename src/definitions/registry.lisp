@@ -5,7 +5,8 @@
 (export '(registry define-registry register *definition-listener* lookup-entry
           defined-in-this-file-p users-entry-p names-to-suggest defined-names all-definitions
           definition-to-replace variable-in-use-p users-entries-named undo-definition
-          redo-definition))
+          redo-definition
+          entry-of restore-entry))
 
 ;;; There is one registry for each kind of definition. Names compare without their package; the
 ;;; newest definition of a name counts. A registry by symbol, as for functions, first looks for the
@@ -113,6 +114,10 @@ instead."
   (let ((entry (lookup-entry name registry)))
     (cond (entry (entry-object entry))
           (errorp (reject-name (registry-text registry) name (names-to-suggest registry))))))
+
+(defun entry-of (object registry)
+  "Return the entry that defines OBJECT in REGISTRY, or NIL."
+  (find object (registry-entries registry) :key #'entry-object))
 
 (defun defined-in-this-file-p (name registry)
   "True if NAME in REGISTRY is defined in the file being loaded. (Later forms may redefine NAME.)"
@@ -272,6 +277,13 @@ unless KIND and NAME are symbols or strings."
           (set-entries registry (remove entry (registry-entries registry))))
         (undefine-entry entry))
       name)))
+
+(defun restore-entry (entry registry)
+  "Add ENTRY, which UNDEFINE has removed from REGISTRY, again, unless its name has been defined
+since then."
+  (with-lock (*registries-lock*)
+    (unless (entry-to-replace (entry-name entry) registry)
+      (set-entries registry (append (registry-entries registry) (list entry))))))
 
 ;;; Making registries.
 

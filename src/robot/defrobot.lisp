@@ -159,6 +159,7 @@ value ...), and ATTRIBUTES an object descriptor. Return the robot."
                                     (list :cameras cameras :hands hands :bins bins :parts parts)))
          (robot (ensure-resident-robot blueprint)))
     (register *robots* name blueprint :variable t :value robot)
+    (setf (blueprint-entry blueprint) (entry-of blueprint *robots*))
     (asking (robot) (call-listeners *robot-hooks* :defined robot))
     (warn-of-angle-in-degrees (definition-title "defrobot" name) (robot-world robot) angle)
     robot))

@@ -4,7 +4,7 @@
 
 (export '(blueprint-robot make-robot add-robot remove-robot *robot-hooks* robot-start-pose
           start-problem-text check-not-retired retire-robot call-run-enders ensure-resident-robot
-          current-resident-world-p))
+          restore-definition current-resident-world-p))
 
 ;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
 ;;; name; a fresh simulation makes another by the same blueprint.
@@ -254,6 +254,11 @@ earlier definitions of the same name. Return the robot, or the robot that is alr
 
 (defmethod undo-definition ((blueprint blueprint))
   (remove-robots-named (blueprint-name blueprint) "its definition has been taken back"))
+
+(defun restore-definition (robot)
+  "Restore the definition from which ROBOT was made, if it has been undefined."
+  (let ((entry (blueprint-entry (robot-blueprint robot))))
+    (when entry (restore-entry entry *robots*))))
 
 (defun put-robot-back (robot)
   "Add ROBOT, which is in no world, to its world again: in the order in which robots were defined."

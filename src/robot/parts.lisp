@@ -5,7 +5,7 @@
 (export '(all-blueprints blueprint *robots* find-blueprint robot-resources mind-p
           *part-vectors* parts-of-kind part mark-world-unsettled ensure-timeline))
 
-;;; A blueprint does not change after DEFROBOT has read it. Any number of robots can be made from
+;;; A blueprint does not change after DEFROBOT has registered it. Any number of robots can be made from
 ;;; it, each in its own world.
 
 (define-record blueprint
@@ -16,7 +16,8 @@
   (y 0d0 double-float "the y coordinate where the robot starts, in metres" :export)
   (angle 0d0 double-float "the robot's heading at its start, in radians" :export)
   (attributes '() list "the attributes of the robot's body, an object descriptor" :export)
-  (parts '() list "a list (kind initarg value ...) for each of its parts" :export))
+  (parts '() list "a list (kind initarg value ...) for each of its parts" :export)
+  (entry nil t "the registry entry of the definition, or NIL until it is registered" :writable))
 
 (defmethod print-object ((blueprint blueprint) stream)
   (print-unreadable-object (blueprint stream :type t) (princ (blueprint-name blueprint) stream)))

@@ -45,11 +45,6 @@ map. If the map or definition of a robot has been replaced, return the current r
         (find-current-robot (robot-name robot))
         robot)))
 
-(defun defined-robot-p (name)
-  "True if the symbol NAME is the name of a definition by DEFROBOT."
-  (let ((blueprint (find-blueprint name nil)))
-    (and blueprint (eq name (blueprint-name blueprint)))))
-
 (defun bind-robot-name (robot)
   (setf (global-value (robot-name robot)) robot))
 

@@ -112,12 +112,8 @@ it: the binding, the global value or both."
         (t #'set)))
 
 (defun robot-without-variable-p (symbol value)
-  "True if VALUE is the robot called SYMBOL and has left its run, or is no longer defined."
-  (and (robot-p value)
-       (eq symbol (robot-name value))
-       (or (robot-retired value)
-           (and (not (headless-p (robot-simulation value)))
-                (not (defined-robot-p symbol))))))
+  "True if VALUE is the robot called SYMBOL and has left its run."
+  (and (robot-p value) (eq symbol (robot-name value)) (robot-retired value)))
 
 (defun take-over-variables (new old)
   "Set the variables of OLD to their values in NEW, where code in OLD sees them."
@@ -134,8 +130,7 @@ it: the binding, the global value or both."
   "Make the world of NEW the world of top-level code, and set the variables of its robots."
   (let ((world (simulation-world new)))
     (setf (map-resident (world-map world)) world)
-    (dolist (robot (world-robots world))
-      (when (defined-robot-p (robot-name robot)) (bind-robot-name robot)))))
+    (mapc #'bind-robot-name (world-robots world))))
 
 (defun hand-over-observers (new old)
   "Make NEW the successor of OLD, and give NEW the observers, gate and messages of OLD."
@@ -166,6 +161,8 @@ in NEW. If its world is resident, make that of NEW resident. Move errors of OLD 
   (let ((current-resident-world-p (not (headless-p old)))
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
     (record-rewind from new)
+    (when current-resident-world-p
+      (mapc #'restore-definition (world-robots (simulation-world new))))
     (when current-p (take-over-variables new old))
     (when current-resident-world-p (make-world-resident new))
     (unless (fork-p old)
