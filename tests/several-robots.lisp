@@ -63,6 +63,18 @@
       (is (= 6 (round (robot:robot-x colt-2)))))
     (is (null (robot:find-robot 'colt-2 nil)))))
 
+;;; Messages.
+
+(test messages.name-the-robot-in-a-run-of-several
+  (flet ((text-of-blocked (robots)
+           (run:with-simulation (robots :clean t)
+             (command:robot-go-distance (robot:find-robot 'colt) 100)
+             (run:run-ticks 100)
+             (with-output-to-string (out) (base:error-display out)))))
+    (let ((alone (text-of-blocked '(colt))) (with-another (text-of-blocked '(colt mare))))
+      (is (equal (format nil "*ERROR* -> Robot is blocked~%") alone))
+      (is (equal (format nil "*ERROR* -> colt: Robot is blocked~%") with-another)))))
+
 (test list.may-be-one-robot-at-another-start
   (run:with-simulation ((colt :at (8 8)))
     (is (equal '((8d0 8d0 0d0)) (poses-of (list colt)))))

@@ -44,12 +44,6 @@ running form, or NIL if the number is not known."
   (apply #'report-object account "message" :kind kind :text text :tick (current-tick) :line line
          (and robot (list :robot robot))))
 
-(defun robot-of-message (message)
-  "Return a text that names the robot of MESSAGE if the run has several robots, else NIL."
-  (let ((name (message-robot message)) (run (or (message-run message) *simulation*)))
-    (and name run (rest (simulation-robots run))
-         (string-downcase (label-in-run name run)))))
-
 (defun report-values (account texts)
   (when (reports-objects-p account)
     (dolist (text texts t) (report-object account "value" :text text))))

@@ -18,10 +18,10 @@ designator was not local, or because of an error in its code, which an error mes
      "Retry. If it never works, (describe (find-manipulation 'name)) shows the things it takes.")
     ;; Moving.
     (:robot-blocked
-     "A wall, or a thing that blocks movement, is in the robot's way. The robot has stopped in front
-of the obstacle."
+     "A wall, another robot, or a thing that blocks movement, is in the robot's way. The robot has
+stopped in front of the obstacle."
      "Look for a free direction, with MAP at the prompt or (camera-view ...), and turn before you
-drive on; go-to and find-way avoid known obstacles.")
+drive on; go-to and find-way avoid known obstacles. Another robot may move on if you wait.")
     (:not-moving
      "The robot's speed is 0, so the robot would never arrive."
      "Set the robot's speed first: (robot-set-speed robot 0.8 nil).")

@@ -7,7 +7,7 @@
           copy-message-queue message *reported-robot* *get-reporting-run* *request-origin*
           take-messages
           queue-message queue-message-items message-text phrase write-message *message-limit*
-          make-message))
+          make-message robot-text robot-of-message))
 
 ;;; Messages are queued as lists of items and become text when they are read. The queue is
 ;;; bounded: beyond *MESSAGE-LIMIT* the oldest are dropped and counted.
@@ -227,15 +227,27 @@ warnings with *WARNING* -> (manual E). If STREAM is NIL, return the line as a st
           (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
           text))
 
+(defgeneric robot-text (run name)
+  (:documentation "Return a text for the robot with the name NAME if messages of RUN must say which
+robot they are about; else NIL. RUN and NAME may be NIL.")
+  (:method (run name) (declare (ignore run name)) nil))
+
+(defun robot-of-message (message)
+  "Return the text for the robot of MESSAGE, or NIL if the message need not name it."
+  (robot-text (message-run message) (message-robot message)))
+
 (public error-display)
 (defun error-display (&optional (stream *standard-output*))
   "Write all queued messages to STREAM, the oldest first, and flush the queue. A STREAM of NIL or T
-means standard output. If FLUSH-ALL-ERRORS* is true, flush the queue without writing. Return nothing
-(manual 3.7, reading 207). Signals WRONG-ARGUMENT, and keeps the messages, if STREAM is no stream."
+means standard output. In a run of several robots, messages about a command begin with its robot's
+name. If FLUSH-ALL-ERRORS* is true, flush the queue without writing. Return nothing (manual 3.7,
+reading 207). Signals WRONG-ARGUMENT, and keeps the messages, if STREAM is no stream."
   (check-argument error-display stream (typep stream '(or stream boolean)) "a stream")
   (let ((messages (take-messages))
         (stream (if (streamp stream) stream *standard-output*)))
     (unless flush-all-errors*
-      (dolist (message messages) (write-message message stream))
+      (dolist (message messages)
+        (write-message message stream (format nil "~@[~A: ~]~A" (robot-of-message message)
+                                              (message-text message))))
       (finish-output stream)))
   (values))

@@ -3,8 +3,8 @@
 (in-package :ars-magna.robot)
 
 (export '(blueprint-robot make-robot add-robot remove-robot *robot-hooks* robot-start-pose
-          start-problem-text check-not-retired retire-robot call-run-enders ensure-resident-robot
-          restore-definition current-resident-world-p))
+          blueprint-start start-problem-text check-not-retired retire-robot call-run-enders
+          ensure-resident-robot restore-definition current-resident-world-p))
 
 ;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
 ;;; name; a fresh simulation makes another by the same blueprint.

@@ -123,7 +123,7 @@ destroyed: it no longer changes (manual 3.2.2)."
   (let* ((world (robot-world robot)) (map (world-map world)) (text (occupant-text world x y robot)))
     (when (and text
                (/= (map-index map x y) (map-index map (robot-x robot) (robot-y robot))))
-      (reject-argument "pos" "position" (list x y)
+      (reject-argument 'place-robot 'position (list x y)
                        (format nil "a point in a cell without a robot; ~A" text)))))
 
 (addition place-robot)
@@ -139,7 +139,7 @@ reading 114."
   (warn-of-angle-in-degrees 'place-robot (robot-world robot) angle)
   (let ((map (world-map (robot-world robot))))
     (unless (map-index map x y)
-      (reject-argument "pos" "position" (list x y)
+      (reject-argument 'place-robot 'position (list x y)
                        (format nil "a point of the map: 0 <= x < ~D, 0 <= y < ~D"
                                (map-width map) (map-height map)))))
   (check-not-occupied robot x y)

@@ -57,9 +57,7 @@ and start are those of BLUEPRINT."
 
 (defun robot-entry-start-pose (entry)
   "Return the list (x y angle) where the robot of ENTRY starts."
-  (let ((blueprint (robot-entry-blueprint entry)))
-    (or (robot-entry-start entry)
-        (list (blueprint-x blueprint) (blueprint-y blueprint) (blueprint-angle blueprint)))))
+  (or (robot-entry-start entry) (blueprint-start (robot-entry-blueprint entry))))
 
 (defun parse-options-of-robot (operator entry)
   (check-entry-options operator entry)

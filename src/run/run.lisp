@@ -89,6 +89,12 @@ steps). See SET-THINKING."
   "Return a list of the robots in SIMULATION."
   (world-robots (simulation-world simulation)))
 
+(defmethod robot-text ((simulation simulation) (name symbol))
+  (let ((robots (simulation-robots simulation)))
+    (and name
+         (rest robots)
+         (string-downcase (name-label name (mapcar #'robot-name robots))))))
+
 (declaim (inline simulation-over))
 (defun simulation-over (simulation)
   "Return the reason why the run of SIMULATION is over, a string, or NIL if it is not over."
