@@ -360,7 +360,7 @@
                  (:file "skipping")
                  (:file "kinds") (:file "digests") (:file "same-bits") (:file "runs")
                  (:file "runs-replaced") (:file "rewinding")
-                 (:file "several-robots") (:file "several-joining")
+                 (:file "several-robots") (:file "several-joining") (:file "several-rewinding")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")

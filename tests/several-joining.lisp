@@ -81,9 +81,10 @@
         (command:robot-turn (robot-called 'owl) 1)
         (pass-ticks-now 5)
         (is (= (run:state-digest) (replayed-digest)))
+        (setf old (robot-called 'owl))
         (run:rewind 10)
         (is (equal '(cat dog) (mapcar #'robot:robot-name (run:simulation-robots))))
-        (is-trouble ("rewound" "owl") (command:robot-turn (robot-called 'owl) 1))
+        (is-trouble ("rewound" "owl") (command:robot-turn old 1))
         (pass-ticks-now 5)
         (is (= (run:state-digest) (replayed-digest)))))))
 
@@ -273,31 +274,6 @@
       (is (eq 'dog (eval '(robot:defrobot dog (pound (3 7) 1)))))
       (is (= 2 (length (run:simulation-robots))))
       (is (= 1 (robot:robot-angle (robot-called 'dog)))))))
-
-(defun undefined-and-rewound-p ()
-  "Undefine the robot DOG in the current run, rewind, and return true if DOG can be used as before."
-  (ars:undefine 'robot 'dog)
-  (pass-ticks-now 4)
-  (run:rewind 6)
-  (command:robot-turn (robot-called 'dog) 1)
-  (pass-ticks-now 4)
-  (and (eq (robot-called 'dog) (robot:find-robot 'dog))
-       (with-temporary-file (file) (run:save-simulation file))
-       (= (run:state-digest) (replayed-digest))))
-
-(test leaving.that-was-rewound-leaves-the-robot-defined
-  (with-pound
-    (with-stopped-run (cat :keep t)
-      (pass-ticks-now 4)
-      (dotimes (i 2)
-        (is-true (undefined-and-rewound-p)))
-      (ars:undefine 'robot 'dog)
-      (is (null (robot:find-robot 'dog nil)))
-      (is (null (rest (run:simulation-robots))))
-      (eval '(robot:defrobot dog (pound (3 9) 1)))
-      (run:rewind 2)
-      (is (= 7 (robot:robot-y (robot-called 'dog))))
-      (is (= 9 (robot:blueprint-y (robot:find-blueprint 'dog)))))))
 
 (test leaving.robots-have-bodies-that-can-be-printed
   (with-pound

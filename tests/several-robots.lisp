@@ -75,6 +75,19 @@
       (is (equal (format nil "*ERROR* -> Robot is blocked~%") alone))
       (is (equal (format nil "*ERROR* -> colt: Robot is blocked~%") with-another)))))
 
+(test messages.at-the-end-of-a-run-name-the-robots
+  (let ((text (with-output-to-string (*error-output*)
+                (run:with-simulation ((colt mare) :clean t)
+                  (dolist (robot (run:simulation-robots))
+                    (command:robot-go-forward robot 100)
+                    (command:robot-turn robot 1 (lambda (&rest all) (error "Oh, ~D" (length all)))))
+                  (run:run-ticks 100)
+                  (dolist (robot (run:simulation-robots)) (command:robot-go-forward robot 100))
+                  (run:run-ticks 100)))))
+    (is (has-words-p text "colt: robot-go-forward: Robot is blocked"
+                     "mare: robot-go-forward: Robot is blocked"
+                     "continuation of robot-turn of COLT" "continuation of robot-turn of MARE"))))
+
 (test list.may-be-one-robot-at-another-start
   (run:with-simulation ((colt :at (8 8)))
     (is (equal '((8d0 8d0 0d0)) (poses-of (list colt)))))
@@ -103,6 +116,7 @@
   (macrolet ((says (robots &rest words)
                `(is-true (has-words-p (or (herd-refusal (run:with-simulation (,robots))) "")
                                       ,@words))))
+    (says (list) "the list of robots is empty")
     (says (colt colt) "twice" "(colt :as colt-2 :at (X Y))")
     (says (colt (colt :as colt)) "twice")
     (says (colt (colt :as colt-2)) "COLT and COLT-2 would start in one cell" ":ghosts t")

@@ -17,7 +17,8 @@ ROBOT."
   (unless (lisp-p (expand-alias text))
     (let ((line (find-line-command (split-first-word (expand-alias text)))))
       (when (or (eq :running (line-family line))
-                (member (line-name line) '("ALL:" "WORLD" "ROBOT" "QUIT") :test #'string=))
+                (member (line-name line) '("ALL:" "WORLD" "ROBOT" "PLOT" "QUIT")
+                        :test #'string=))
         (reject-line "~A is not about one robot. Type it without ~A." (line-name line)
                      +all-robots+)))))
 

@@ -71,9 +71,14 @@
 
 (defun reject-robot-elsewhere (name)
   "Signal BAD-LINE with a text that tells how to get to the robot NAME in another world."
-  (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, at tick 0, ~
-                and ends this run."
-               name (map-name (map-of-robot name))))
+  (let ((map (map-name (map-of-robot name))))
+    (if (eq map (simulation-name *simulation*))
+        (reject-line "~A is not in this run. WORLD ~(~A~) ~2:*~(~A~) starts another run, which ~
+                      ends this one."
+                     name map)
+        (reject-line "~A is in another world, ~(~A~). WORLD ~:*~(~A~) ~2:*~(~A~) goes there, at ~
+                      tick 0, and ends this run."
+                     name map))))
 
 (define-line "ROBOT" (session (name :robot-here "the robot to command" :optional))
     (:seeing)

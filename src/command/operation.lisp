@@ -133,13 +133,22 @@ the command that it has interrupted, or NIL"))
           (report (let ((text (printing-text () (apply report operation results))))
                     (when text (queue-operation-message operation text)))))))
 
+(defun continuation-origin (operation)
+  "Return the origin that messages name for the continuation of OPERATION, with the name of its robot
+if there are several."
+  (let ((origin (command-origin (operation-command operation)))
+        (robot (resource-robot (operation-resource operation))))
+    (if (and (robot-world robot) (rest (world-robots (robot-world robot))))
+        (append (ensure-list origin) (list " of " (robot-label robot)))
+        origin)))
+
 ;; See reading 86.
 (defun call-continuation (operation code results)
   (when (operation-continuation operation)
     (when (operation-forked-p operation)
       (record-code-moment (operation-timeline operation)))
     (apply #'call-user-code (operation-continuation operation)
-           (command-origin (operation-command operation))
+           (continuation-origin operation)
            code (resource-for-users operation) results)))
 
 (defun notify-caller (operation code results)

@@ -213,20 +213,6 @@ They are formatted when the message is read, so ARGUMENTS must never change."))
   "Return the items of MESSAGE as a string, without the marker *ERROR* or *WARNING*."
   (format nil "~{~A~}" (mapcar #'item-text (message-items message))))
 
-(defun text-with-command (message)
-  "Return the text of MESSAGE. Unless it begins with the name of its command, prepend the name."
-  (let ((text (message-text message)) (name (message-about message)))
-    (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
-        (format nil "~(~A~): ~A" name text)
-        text)))
-
-(defun write-message (message stream &optional (text (message-text message)))
-  "Write MESSAGE, with the text TEXT, and a newline to STREAM. Errors begin with *ERROR* ->,
-warnings with *WARNING* -> (manual E). If STREAM is NIL, return the line as a string."
-  (format stream "~@[*~A* -> ~]~A~%"
-          (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
-          text))
-
 (defgeneric robot-text (run name)
   (:documentation "Return a text for the robot with the name NAME if messages of RUN must say which
 robot they are about; else NIL. RUN and NAME may be NIL.")
@@ -235,6 +221,26 @@ robot they are about; else NIL. RUN and NAME may be NIL.")
 (defun robot-of-message (message)
   "Return the text for the robot of MESSAGE, or NIL if the message need not name it."
   (robot-text (message-run message) (message-robot message)))
+
+(defun text-with-robot (message &optional (text (message-text message)))
+  "Return TEXT, of MESSAGE. If the message must name its robot, prepend the name."
+  (format nil "~@[~A: ~]~A" (robot-of-message message) text))
+
+(defun text-with-command (message)
+  "Return the text of MESSAGE, with the names of its robot, if needed, and of its command."
+  (let ((text (message-text message)) (name (message-about message)))
+    (text-with-robot
+     message
+     (if (and name (not (starts-with-subseq (string name) text :test #'char-equal)))
+         (format nil "~(~A~): ~A" name text)
+         text))))
+
+(defun write-message (message stream &optional (text (message-text message)))
+  "Write MESSAGE, with the text TEXT, and a newline to STREAM. Errors begin with *ERROR* ->,
+warnings with *WARNING* -> (manual E). If STREAM is NIL, return the line as a string."
+  (format stream "~@[*~A* -> ~]~A~%"
+          (ecase (message-kind message) (:error "ERROR") (:warning "WARNING") (:message nil))
+          text))
 
 (public error-display)
 (defun error-display (&optional (stream *standard-output*))
@@ -247,7 +253,6 @@ reading 207). Signals WRONG-ARGUMENT, and keeps the messages, if STREAM is no st
         (stream (if (streamp stream) stream *standard-output*)))
     (unless flush-all-errors*
       (dolist (message messages)
-        (write-message message stream (format nil "~@[~A: ~]~A" (robot-of-message message)
-                                              (message-text message))))
+        (write-message message stream (text-with-robot message)))
       (finish-output stream)))
   (values))

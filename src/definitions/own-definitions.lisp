@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(*variables-to-restore* overwrite-object call-with-own-definitions))
+(export '(*variables-to-restore* value-to-restore overwrite-object call-with-own-definitions))
 
 (defun overwrite-object (object model)
   "Copy all slots of MODEL to OBJECT, a structure of the same type. Return OBJECT."
@@ -39,6 +39,11 @@ to restore afterwards. Signals MISUSE if another thread is inside."
       (reject-use "Another thread is inside with-own-definitions. Wait for that thread."))
     other))
 
+(defgeneric value-to-restore (value)
+  (:documentation "Return what has replaced VALUE, the value of a variable to be restored, in the
+meantime; VALUE itself if nothing has.")
+  (:method (value) value))
+
 (defvar *variables-to-restore* '()
   "Variables that WITH-OWN-DEFINITIONS restores. Each layer adds its own.")
 
@@ -54,7 +59,9 @@ to restore afterwards. Signals MISUSE if another thread is inside."
       (funcall function)
       (loop for (registry . entries) in kept
             do (restore-registry registry entries))
-      (mapc #'set variables values)
+      (loop for variable in variables
+            for value in values
+            do (set variable (value-to-restore value)))
       (setf *own-definitions-thread* outer))))
 
 (addition with-own-definitions)

@@ -6,7 +6,7 @@
           defined-in-this-file-p users-entry-p names-to-suggest defined-names all-definitions
           definition-to-replace variable-in-use-p users-entries-named undo-definition
           redo-definition
-          entry-of restore-entry))
+          entry-of restore-entry remove-entry forget-value entry-variable))
 
 ;;; There is one registry for each kind of definition. Names compare without their package; the
 ;;; newest definition of a name counts. A registry by symbol, as for functions, first looks for the
@@ -259,31 +259,50 @@ in order. SOURCE is a definition's file, :OWN for the simulator's, or NIL for ty
     (reject-use "The ~A ~(~A~) cannot be undefined: the simulator needs it."
                 (registry-text registry) (entry-name entry))))
 
+(defun check-unambiguous (registry entry name)
+  "Signal MISUSE if NAME, a symbol or string, may mean other entries of REGISTRY than ENTRY, too."
+  (let ((others (remove-if-not (lambda (other) (entry-named-p other name registry))
+                               (registry-entries registry))))
+    (when (and (rest others)
+               (not (eq (entry-name entry) (or (qualified-symbol name) name))))
+      (reject-use "undefine: ~A could be ~{~A~^ or ~}. Give the symbol, with its package."
+                  name (mapcar (lambda (other) (qualified-name (entry-name other))) others)))))
+
 (addition undefine)
 (defun undefine (kind name)
   "Remove the definition of NAME as KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
 MANIPULATION, ROBOT, PLAN, POLICY or GOAL, a symbol of any package. The variable of the definition
 becomes unbound. Existing worlds do not change, except that a robot leaves the resident world of its
-map. Return NAME. Signals UNKNOWN-NAME; MISUSE for some definitions of the simulator; WRONG-ARGUMENT
-unless KIND and NAME are symbols or strings."
+map. Return NAME. Signals UNKNOWN-NAME; MISUSE for some definitions of the simulator, and if NAME
+could mean several definitions; WRONG-ARGUMENT unless KIND and NAME are symbols or strings."
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
   (check-argument undefine name (typep name '(or symbol string)) "the name of a definition")
   (let ((registry (find-registry kind)))
     (find-definition name registry t)
     (let ((entry (lookup-entry name registry)))
       (check-may-undefine registry entry)
+      (check-unambiguous registry entry name)
       (deferring-interrupts
-        (with-lock (*registries-lock*)
-          (set-entries registry (remove entry (registry-entries registry))))
+        (remove-entry entry registry)
         (undefine-entry entry))
       name)))
 
 (defun restore-entry (entry registry)
-  "Add ENTRY, which UNDEFINE has removed from REGISTRY, again, unless its name has been defined
-since then."
+  "Make ENTRY, an earlier entry of REGISTRY, the current entry for its name again. Return true if it
+was not."
   (with-lock (*registries-lock*)
-    (unless (entry-to-replace (entry-name entry) registry)
-      (set-entries registry (append (registry-entries registry) (list entry))))))
+    (unless (member entry (registry-entries registry))
+      (set-entries registry
+                   (entries-including entry (entry-to-replace (entry-name entry) registry)
+                                      nil registry))
+      t)))
+
+(defun remove-entry (entry registry)
+  "Remove ENTRY from REGISTRY. Return true if it was there."
+  (with-lock (*registries-lock*)
+    (when (member entry (registry-entries registry))
+      (set-entries registry (remove entry (registry-entries registry)))
+      t)))
 
 ;;; Making registries.
 

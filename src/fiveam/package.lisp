@@ -7,7 +7,7 @@ written with FiveAM. Use this package together with FIVEAM.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying)
   (:import-from :fiveam #:pass #:fail)
   (:import-from :ars-magna.statistics #:rate-verdict #:exact-interval #:share-as-double)
-  (:import-from :ars-magna.run #:names-in-robots #:literal-robots-form)
+  (:import-from :ars-magna.run #:names-in-robots #:literal-robots-form #:robots-expression-p)
   (:import-from :ars-magna.experiment
                 #:experiment-from-options #:find-experiment #:experiment-name
                 #:experiment-conditions

@@ -66,6 +66,14 @@ MALFORMED-DEFINITION without a robot."
                      "an option :robots, with the name of a robot or a list of robots of one map"))
     elements))
 
+(defun robots-form-and-names (operator robots form environment)
+  "Return two values: a form for the list of robots that ROBOTS, the option of a macro, means; and
+the names of robots that can be variables in FORM. If ROBOTS is an expression, there are no names."
+  (if (robots-expression-p robots environment)
+      (values robots '())
+      (let ((elements (parse-robot-list operator robots form)))
+        (values (literal-robots-form elements environment) (names-in-robots elements)))))
+
 (defun parameters-form (operator parameters)
   "Return a form that returns lists (name value). PARAMETERS is such a form, or lists (name form)."
   (if (and (consp parameters) (consp (first parameters)))
@@ -80,12 +88,13 @@ MALFORMED-DEFINITION without a robot."
 (defun subject-expansion (operator form robots parameters clean ghosts limit environment)
   "Return a form that makes the subject from these arguments of the macro OPERATOR."
   (warn-of-nested-run form)
-  (let ((robots (parse-robot-list operator robots form)))
+  (multiple-value-bind (robots-form names)
+      (robots-form-and-names operator robots form environment)
     `(make-subject (lambda ()
-                     (declare (special ,@(names-in-robots robots)))
+                     (declare (special ,@names))
                      ,form)
                    ',form (find-package ,(package-name *package*))
-                   ,(literal-robots-form robots environment)
+                   ,robots-form
                    ,(parameters-form operator parameters) ,clean (and ,ghosts t) ,limit)))
 
 ;;;; A trial

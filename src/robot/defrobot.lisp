@@ -127,7 +127,7 @@ PARSE-CAMERA is such a function for cameras."
 (defun parse-body-attributes (name attributes)
   "Return ATTRIBUTES, an object descriptor, for the body of the robot NAME. It blocks other robots
 unless ATTRIBUTES say otherwise."
-  (let ((descriptor (checked-descriptor "defrobot" attributes)))
+  (let ((descriptor (checked-descriptor (definition-title "defrobot" name) attributes)))
     (warn-of-misspellings (definition-title "defrobot" name) name descriptor)
     (if (assoc :obsmove descriptor)
         descriptor

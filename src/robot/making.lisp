@@ -4,7 +4,8 @@
 
 (export '(blueprint-robot make-robot add-robot remove-robot *robot-hooks* robot-start-pose
           blueprint-start start-problem-text check-not-retired retire-robot call-run-enders
-          ensure-resident-robot restore-definition current-resident-world-p))
+          ensure-resident-robot restore-definition take-definition-back
+          current-resident-world-p))
 
 ;;; DEFROBOT puts a robot made by its blueprint into its map's resident world and binds the robot's
 ;;; name; a fresh simulation makes another by the same blueprint.
@@ -171,6 +172,8 @@ definition has been registered, with :JOINED, :LEFT or :DEFINED, and the robot."
         (take-body robot)
         (setf (world-robots world) (remove robot (world-robots world)))
         (arrange-robots world)
+        ;; It may still be looked at.
+        (setf (robot-dice-base robot) 0)
         (call-listeners *robot-hooks* :left robot)))))
 
 (defun remove-robots-named (name reason &optional except)
@@ -207,9 +210,14 @@ definition has been registered, with :JOINED, :LEFT or :DEFINED, and the robot."
                                                   (robot-name robot)))))
              (world-robots world))))
 
+(defun under-way-or-live-p (world)
+  "True if ticks of WORLD have passed or pass by themselves."
+  (or (plusp (world-tick world))
+      (and (world-timeline world) (timeline-thread (world-timeline world)))))
+
 (defun check-start-free (blueprint world)
   "Signal MISUSE if the run of WORLD has begun and another robot is where BLUEPRINT starts."
-  (let ((other (and (plusp (world-tick world))
+  (let ((other (and (under-way-or-live-p world)
                     (not (world-ghosts-p world))
                     (robot-in-the-way blueprint world))))
     (when other
@@ -256,9 +264,23 @@ earlier definitions of the same name. Return the robot, or the robot that is alr
   (remove-robots-named (blueprint-name blueprint) "its definition has been taken back"))
 
 (defun restore-definition (robot)
-  "Restore the definition from which ROBOT was made, if it has been undefined."
+  "Restore the definition from which ROBOT was made, if it has been undefined or replaced. Return
+true if so."
   (let ((entry (blueprint-entry (robot-blueprint robot))))
-    (when entry (restore-entry entry *robots*))))
+    (when (and entry (restore-entry entry *robots*))
+      (remove-robots-named (robot-name robot) "its definition has been restored by a rewind"
+                           (robot-world robot))
+      t)))
+
+(defun take-definition-back (robot)
+  "Remove the definition from which ROBOT, a retired robot, was made, if it still holds. Return true
+if so."
+  (let* ((entry (blueprint-entry (robot-blueprint robot)))
+         (variable (and entry (entry-variable entry))))
+    (when (and entry (remove-entry entry *robots*))
+      (when (and variable (eq robot (ignore-errors (global-value variable))))
+        (forget-value variable))
+      t)))
 
 (defun put-robot-back (robot)
   "Add ROBOT, which is in no world, to its world again: in the order in which robots were defined."
@@ -271,12 +293,22 @@ earlier definitions of the same name. Return the robot, or the robot that is alr
     (arrange-robots world)
     (call-listeners *robot-hooks* :joined robot)))
 
+(defun robot-in-resident-world (robot)
+  "If another world than that of ROBOT is resident in its map, as after a rewind, return the robot
+of the same name there, or NIL."
+  (let ((world (map-resident (world-map (robot-world robot)))))
+    (and world
+         (not (eq world (robot-world robot)))
+         (find (robot-name robot) (world-robots world) :key #'robot-name))))
+
 (defmethod redo-definition ((blueprint blueprint))
-  (let ((robot (blueprint-robot blueprint)))
-    (when (robot-p robot)
-      (setf (robot-retired robot) nil)
-      (unless (member robot (world-robots (robot-world robot)))
-        (put-robot-back robot))))
+  (let* ((robot (blueprint-robot blueprint))
+         (successor (and (robot-p robot) (robot-in-resident-world robot))))
+    (cond (successor (setf (global-value (robot-name robot)) successor))
+          ((robot-p robot)
+           (setf (robot-retired robot) nil)
+           (unless (member robot (world-robots (robot-world robot)))
+             (put-robot-back robot)))))
   blueprint)
 
 (define-facts (blueprint blueprint)

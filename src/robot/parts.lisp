@@ -17,7 +17,7 @@
   (angle 0d0 double-float "the robot's heading at its start, in radians" :export)
   (attributes '() list "the attributes of the robot's body, an object descriptor" :export)
   (parts '() list "a list (kind initarg value ...) for each of its parts" :export)
-  (entry nil t "the registry entry of the definition, or NIL until it is registered" :writable))
+  (entry nil t "the entry of the definition in the registry, or NIL" :writable))
 
 (defmethod print-object ((blueprint blueprint) stream)
   (print-unreadable-object (blueprint stream :type t) (princ (blueprint-name blueprint) stream)))

@@ -51,10 +51,20 @@ begins now."
   "Return the full name of the kind of the robot NAME in HEADER."
   (or (second (find name (getf header :starts) :key #'first :test #'string=)) name))
 
+(defun blueprint-of-kind (kind header)
+  "Return the blueprint of KIND, the full name of the kind of a robot in HEADER. A definition of that
+name in another package serves as well, unless HEADER needs that one itself. Signals UNKNOWN-NAME."
+  (let* ((blueprint (find-blueprint kind)) (found (qualified-name (blueprint-name blueprint))))
+    (when (and (not (string-equal kind found))
+               (find found (getf header :robots) :test #'string-equal
+                                                 :key (lambda (name) (kind-of-robot name header))))
+      (reject-name "robot" kind '()))
+    blueprint))
+
 (defun header-blueprints (header)
   "Return the blueprints of the robots in HEADER. Signals UNKNOWN-NAME."
   (loop for name in (getf header :robots)
-        collect (find-blueprint (kind-of-robot name header))))
+        collect (blueprint-of-kind (kind-of-robot name header) header)))
 
 (defun symbol-of-full-name (name)
   "Return the symbol with the full name NAME. Make it if its package exists."
@@ -78,7 +88,7 @@ begins now."
   "Return a list of the ROBOT-ENTRIES of the robots in HEADER. Signals UNKNOWN-NAME."
   (loop for name in (getf header :robots)
         for (nil kind . start) = (find name (getf header :starts) :key #'first :test #'string=)
-        for blueprint = (find-blueprint (or kind name))
+        for blueprint = (blueprint-of-kind (or kind name) header)
         collect (make-robot-entry blueprint (symbol-of-robot name (or kind name))
                                   (mapcar #'double start))))
 

@@ -164,11 +164,17 @@ MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
     (keep-forks keep simulation)
     (start-clock simulation :rate rate :real (eq thinking :real))))
 
+(defun check-startable (world journal)
+  "Signal MISUSE if robots of WORLD are in one another's way, before the clock of WORLD is stopped."
+  (asking ((ensure-timeline world))
+    (check-world-robots-apart world (startable-p (world-simulation world) journal))))
+
 (defun start-world-of-robot (robot rate seed journal keep thinking ghosts)
   "Run the world of ROBOT live, see START-WORLD. Return false if another thread has replaced ROBOT."
   (let ((world (robot-world robot))
         ;; This thread may be that of the current simulation, even if asked to stop.
         (everywhere (and *simulation* (pacing-thread-p (simulation-timeline *simulation*)))))
+    (unless ghosts (check-startable world journal))
     (call-while-starting world (lambda ()
                            ;; Its map may have been replaced while it was made.
                            (when (and (eq world (map-resident (world-map world)))

@@ -138,7 +138,17 @@ false if another world has become resident in its map."
   ;; There may be robots of a map that was undefined.
   (remake-robots new))
 
+(defmethod value-to-restore ((simulation simulation))
+  (latest-successor simulation))
+
+(defmethod value-to-restore ((world world))
+  (let ((simulation (and (world-timeline world) (world-simulation world))))
+    (if simulation (simulation-world (latest-successor simulation)) world)))
+
 (defmethod redo-definition ((map map))
+  ;; Its run may have been rewound meanwhile.
+  (when (map-resident map)
+    (setf (map-resident map) (value-to-restore (map-resident map))))
   (let* ((world (map-resident map))
          (simulation (and world (world-simulation world))))
     (when world

@@ -126,6 +126,21 @@ it: the binding, the global value or both."
     (funcall setter '*simulation* new)
     (funcall setter '*world* (simulation-world new))))
 
+(defun restore-definitions-of-robots (new old)
+  "Restore the definitions of robots as they were where NEW, which replaces the run OLD of a
+resident world, begins. Queue a message that names the robots concerned."
+  (let* ((robots (world-robots (simulation-world new)))
+         (joined (set-difference (world-robots (simulation-world old)) robots :key #'robot-name))
+         (restored (remove-if-not #'restore-definition robots))
+         (removed (remove-if-not #'take-definition-back joined)))
+    (when restored
+      (message-set (format nil "~{~A~^, ~} ~:[is~;are~] again defined as at tick ~D."
+                           (mapcar #'robot-label restored) (rest restored)
+                           (simulation-tick new))))
+    (when removed
+      (message-set (format nil "~{~A~^, ~} joined after tick ~D and ~:[is~;are~] no longer defined."
+                           (mapcar #'robot-label removed) (simulation-tick new) (rest removed))))))
+
 (defun make-world-resident (new)
   "Make the world of NEW the world of top-level code, and set the variables of its robots."
   (let ((world (simulation-world new)))
@@ -162,7 +177,8 @@ in NEW. If its world is resident, make that of NEW resident. Move errors of OLD 
         (current-p (or (eq old *simulation*) (eq old (global-value '*simulation*)))))
     (record-rewind from new)
     (when current-resident-world-p
-      (mapc #'restore-definition (world-robots (simulation-world new))))
+      (restore-definitions-of-robots new old)
+      (when (simulation-journal new) (merge-journal-definitions new)))
     (when current-p (take-over-variables new old))
     (when current-resident-world-p (make-world-resident new))
     (unless (fork-p old)
@@ -241,7 +257,8 @@ variables, and is live, at the same rate, if SIMULATION was live. SIMULATION its
 robots take no more commands. SIMULATION must keep forks, see KEEP-FORKS. TICKS is a number from 0
 to the number of ticks that have passed since SIMULATION began to keep forks; 0 undoes the requests
 and changes since the last tick.
-- Requests and changes after that tick are undone. The journal records the rewind.
+- Requests and changes after that tick are undone. The journal records the rewind. In a live run,
+robots are defined as at that tick: what DEFROBOT and UNDEFINE have done since is undone.
 - Commands and plans in progress at that tick continue, but programs do not. When REWIND is
   called, continuations of commands in progress receive :INTERRUPT. Commands that continue after
   that never call their continuations. So a program such as ROBOT-GO-TO issues no further commands.

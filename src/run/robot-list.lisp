@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.run)
 
-(export '(parse-robots check-entries-apart literal-robots-form names-in-robots))
+(export '(parse-robots check-entries-apart literal-robots-form names-in-robots
+          robot-list-form robots-expression-p))
 
 ;;; A list of robots has names, robots, and entries (NAME :as OTHER-NAME :at (x y) :angle a):
 ;;; another robot of the kind NAME, or NAME at another start. A literal list in a macro has
@@ -100,7 +101,7 @@ and start are those of BLUEPRINT."
                                                           (robot-entry-blueprint entry)))))))
     (unless (= (length maps) 1)
       (reject-use "All robots of a simulation must be defined in one map, but these are defined in ~
-                   ~:[none~;~:*~{~A~^, ~}~]."
+                   ~{~A~^, ~}."
                   maps))))
 
 (defun parse-robots (robots &optional (operator 'with-simulation))
@@ -110,6 +111,8 @@ these. Errors name OPERATOR."
     (reject-entry operator robots "it is a dotted list"))
   (let ((entries (mapcar (lambda (robot) (parse-robot operator robot))
                          (if (entry-form-p robots) (list robots) (ensure-list robots)))))
+    (unless entries
+      (reject-use "~(~A~): the list of robots is empty. Name at least one robot." operator))
     (check-names-unlike operator entries)
     (check-one-map entries)
     entries))

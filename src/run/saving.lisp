@@ -153,6 +153,8 @@ cannot be saved. Return the truename of FILE."
   (when (simulation-inside-tick-p simulation)
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)
+  (unless (simulation-robots simulation)
+    (reject-use "save-simulation: all robots have left this run, so that nothing can go on in it."))
   (when (eq simulation *simulation*) (record-settings simulation))
   (record-progress-checked (simulation-world simulation))
   (let ((programs (program-state-for-head simulation)))

@@ -224,8 +224,10 @@ thing's clause in a map, or NIL."
               (attribute-in-world-p key world))
     (warn-once key world
                (format nil "No thing here has ~(~S~), which is not declared~@[; did you mean ~
-                            ~(~S~)?~]~:[~;: it is an option for making things, not an attribute~]"
-                       key (declared-name-like key) (option-of-things-p key)))))
+                            ~(~S~)?~]~:[~;: it is an option for making things, not an ~
+                            attribute~]~:[~;. Robots are ghosts in this run and are not seen~]"
+                       key (declared-name-like key) (option-of-things-p key)
+                       (and (world-ghosts-p world) (rest (world-robots world)))))))
 
 ;;; A redefined attribute may no longer accept the values that things have.
 

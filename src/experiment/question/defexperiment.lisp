@@ -186,11 +186,16 @@ deadlock. The documentation of RUN-EXPERIMENT says what is kept."
   (dolist (name names)
     (unless (and name (symbolp name))
       (reject-clause definition part
-                     "names of robots. In :vary, quote each value: (:robots 'ann '(ann bob))"))
+                     "names of robots. In :vary, quote each value: (:robots 'ann '(ann bob)); a ~
+                      value there may also be a form that computes the list"))
     (unless (find-blueprint name nil)
       (reject-clause definition part
-                     (format nil "defined robots; ~(~A~) is not one. Known: ~{~(~A~)~^, ~}"
-                             name (mapcar #'blueprint-name (all-blueprints))))))
+                     (let ((names (reverse (mapcar #'blueprint-name (all-blueprints)))))
+                       (format nil "defined robots; ~(~A~) is not one~@[ (did you mean ~(~A~)?)~]. ~
+                                    Known: ~{~(~A~)~^, ~}~@[ and ~D more~]"
+                               name (nearest-name name names)
+                               (subseq names 0 (min 12 (length names)))
+                               (and (> (length names) 12) (- (length names) 12)))))))
   (let ((maps (remove-duplicates (mapcar (lambda (name) (blueprint-map (find-blueprint name)))
                                          names)
                                  :test #'same-name-p)))
