@@ -134,8 +134,8 @@ the command that it has interrupted, or NIL"))
                     (when text (queue-operation-message operation text)))))))
 
 (defun continuation-origin (operation)
-  "Return the origin that messages name for the continuation of OPERATION, with the name of its robot
-if there are several."
+  "Return the origin that messages name for the continuation of OPERATION. It names the robot if
+there are several."
   (let ((origin (command-origin (operation-command operation)))
         (robot (resource-robot (operation-resource operation))))
     (if (and (robot-world robot) (rest (world-robots (robot-world robot))))

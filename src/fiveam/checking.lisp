@@ -119,10 +119,10 @@ MALFORMED-DEFINITION for another FORM, or if there are OPTIONS, which the experi
 
 Each trial evaluates FORM in a fresh headless simulation. ROBOTS is the name of a robot, a list of
 names and entries (NAME :as OTHER-NAME :at (X Y) :angle A), see WITH-SIMULATION, or a form that
-computes such a list; names that are written out are bound to the robots. If GHOSTS is true, robots have no bodies. As for :run of an experiment, the values of
-RUN-PLAN, or else the first value of FORM, decide whether the trial succeeded. Trials with an error
-or with more than LIMIT ticks do not succeed: so :limit 300 :at-least 1/2 checks that the median of
-ticks is at most 300. Trial T has the seed SEED + T. Parameters have the values of the manual,
+computes such a list; names that are written out are bound to the robots. If GHOSTS is true, robots
+have no bodies. As for :run of an experiment, the values of RUN-PLAN, or else the first value of
+FORM, decide whether the trial succeeded. Trials with an error or with more than LIMIT ticks do not
+succeed: so :limit 300 :at-least 1/2 checks that the median of ticks is at most 300. Trial T has the seed SEED + T. Parameters have the values of the manual,
 except those in PARAMETERS: lists (name form) as in DEFEXPERIMENT, or a form that returns lists
 (name value). If CLEAN is true, trials have no noise.
 

@@ -5,8 +5,8 @@
 (export '(all-blueprints blueprint *robots* find-blueprint robot-resources mind-p
           *part-vectors* parts-of-kind part mark-world-unsettled ensure-timeline))
 
-;;; A blueprint does not change after DEFROBOT has registered it. Any number of robots can be made from
-;;; it, each in its own world.
+;;; A blueprint does not change after DEFROBOT has registered it. Any number of robots can be made
+;;; from it, each in its own world.
 
 (define-record blueprint
   "The definition of a robot by DEFROBOT, from which robots are made."

@@ -52,8 +52,9 @@ begins now."
   (or (second (find name (getf header :starts) :key #'first :test #'string=)) name))
 
 (defun blueprint-of-kind (kind header)
-  "Return the blueprint of KIND, the full name of the kind of a robot in HEADER. A definition of that
-name in another package serves as well, unless HEADER needs that one itself. Signals UNKNOWN-NAME."
+  "Return the blueprint of KIND, the full name of the kind of a robot in HEADER. A definition of
+that name in another package serves as well, unless HEADER needs that one itself. Signals
+UNKNOWN-NAME."
   (let* ((blueprint (find-blueprint kind)) (found (qualified-name (blueprint-name blueprint))))
     (when (and (not (string-equal kind found))
                (find found (getf header :robots) :test #'string-equal
