@@ -25,7 +25,9 @@
       (is (null (rest (run:simulation-robots))))
       (eval '(robot:defrobot dog (pound (3 9) 1)))
       (run:rewind 2)
-      (is (= 7 (robot:robot-y (robot-called 'dog)) (robot:blueprint-y (robot:find-blueprint 'dog)))))))
+      (is (= 7
+             (robot:robot-y (robot-called 'dog))
+             (robot:blueprint-y (robot:find-blueprint 'dog)))))))
 
 (test joining.that-is-rewound-is-undone-with-the-definition
   (with-pound
