@@ -124,7 +124,8 @@ have no bodies. As for :run of an experiment, the values of RUN-PLAN, or else th
 FORM, decide whether the trial succeeded. Trials with an error or with more than LIMIT ticks do not
 succeed: so :limit 300 :at-least 1/2 checks that the median of ticks is at most 300. Trial T has the
 seed SEED + T. Parameters have the values of the manual, except those in PARAMETERS: lists (name
-form) as in DEFEXPERIMENT, or a form that returns lists (name value). If CLEAN is true, trials have no noise.
+form) as in DEFEXPERIMENT, or a form that returns lists (name value). If CLEAN is true, trials have
+no noise.
 
 FORM may also be (:experiment NAME) or (:experiment NAME :condition C). Then the check runs trials
 of the experiment NAME, which determines robots, seed, parameters and limit.
