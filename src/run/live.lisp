@@ -164,10 +164,10 @@ MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
     (keep-forks keep simulation)
     (start-clock simulation :rate rate :real (eq thinking :real))))
 
+;; The owner may be busy and is not asked: when the clock is stopped, the check is made again.
 (defun check-startable (world journal)
   "Signal MISUSE if robots of WORLD are in one another's way, before the clock of WORLD is stopped."
-  (asking ((ensure-timeline world))
-    (check-world-robots-apart world (startable-p (world-simulation world) journal))))
+  (check-world-robots-apart world (startable-p (world-simulation world) journal)))
 
 (defun start-world-of-robot (robot rate seed journal keep thinking ghosts)
   "Run the world of ROBOT live, see START-WORLD. Return false if another thread has replaced ROBOT."
