@@ -43,7 +43,7 @@ FILE as it is."
       (let ((simulation (run:robot-simulation (symbol-value 'hermit))))
         (base:undefine 'robot 'hermit)
         (check-refused (lambda (file) (run:save-simulation file simulation))
-                       "the head names no robots" file)))))
+                       "all robots have left" file)))))
 
 (test saving.a-thing-that-is-in-itself-is-refused
   "A state that no command leads to, but that a fault of the simulator might."
