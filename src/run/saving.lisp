@@ -154,7 +154,8 @@ cannot be saved. Return the truename of FILE."
     (reject-use "save-simulation: a tick is under way. Save the run between ticks."))
   (check-not-over simulation 'save-simulation)
   (unless (simulation-robots simulation)
-    (reject-use "save-simulation: all robots have left this run, so that nothing can go on in it."))
+    (reject-use "save-simulation: all robots have left this run, so that nothing can go on in it. ~
+                 (simulator ROBOT) starts another run."))
   (when (eq simulation *simulation*) (record-settings simulation))
   (record-progress-checked (simulation-world simulation))
   (let ((programs (program-state-for-head simulation)))
