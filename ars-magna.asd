@@ -83,11 +83,12 @@
     :components ((:file "package") (:file "realm") (:file "home") (:file "fluent")
                  (:file "network") (:file "propagation") (:file "operators")))
    (:module "rpl/tasks" :serial t
-    :components ((:file "package") (:file "queues") (:file "failure") (:file "task")
-                 (:file "trace") (:file "runner") (:file "charging") (:file "tracing")
-                 (:file "machine") (:file "ending") (:file "stepping") (:file "calls")
-                 (:file "procedure") (:file "report") (:file "care") (:file "engine")
-                 (:file "blocking") (:file "variables") (:file "stillness")))
+    :components ((:file "package") (:file "queues") (:file "failure") (:file "agents")
+                 (:file "task") (:file "trace") (:file "runner") (:file "ready")
+                 (:file "charging") (:file "tracing") (:file "machine") (:file "ending")
+                 (:file "stepping") (:file "calls") (:file "procedure") (:file "report")
+                 (:file "care") (:file "reacting") (:file "engine") (:file "blocking")
+                 (:file "variables") (:file "stillness")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
                  (:file "checking") (:file "mistakes") (:file "known-fluents") (:file "compiler")

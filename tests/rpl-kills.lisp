@@ -129,7 +129,7 @@
                       (find-if #'fluents::fluent-first-link fluents)
                       (find-if #'rpl:valve-owner valves)
                       (find-if #'constructs::valve-requests valves)
-                      (plusp (tasks::runner-blocks runner))
+                      (plusp (rpl:runner-blocks runner))
                       (and (not (rpl:runner-idle-p runner)) :ready)))))
 
 (defun trouble-with-kills (plans kills seed)

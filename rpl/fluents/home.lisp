@@ -104,24 +104,33 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
      (declare (dynamic-extent #'body))
      (call-with-owned-home ,home #'body)))
 
-;;; Posting.
+;;; Posting. An entry in the inbox or outbox is a cons of an agent and what is to be done. What an
+;;; agent is, the fluents need not know: an entry is applied when whoever applies it says that its
+;;; agent may go on.
 
-(defun post-entry (home entry)
-  "Append ENTRY, a list of settings or a function, to the entries posted to HOME."
+(defun post-entry (home entry &optional agent)
+  "Append ENTRY, a list of settings or a function, to the entries posted to HOME. If AGENT is given,
+apply ENTRY only while the tasks of this agent of HOME may run."
   (let ((wrapper (home-wrapper home)))
-    (atomic-push (if wrapper (funcall wrapper entry) entry) (home-inbox home)))
+    (atomic-push (cons agent (if wrapper (funcall wrapper entry) entry)) (home-inbox home)))
   (funcall (home-on-post home))
   (values))
 
-(defun take-posted-entry (home)
-  "Remove the oldest entry posted to HOME. Return the entry and true, or NIL and false if none."
-  (unless (home-outbox home)
-    (loop for entries = (home-inbox home)
-          until (swap-if-eq (home-inbox home) entries '())
-          finally (setf (home-outbox home) (reverse entries))))
-  (if (home-outbox home)
-      (values (pop (home-outbox home)) t)
-      (values nil nil)))
+(defun collect-posts (home)
+  "Move the entries in the inbox of HOME to the end of its outbox."
+  (loop for entries = (home-inbox home)
+        until (swap-if-eq (home-inbox home) entries '())
+        finally (setf (home-outbox home) (append (home-outbox home) (reverse entries)))))
+
+(defun take-posted-entry (home &optional (due-p (constantly t)))
+  "Remove the oldest entry posted to HOME for whose agent, or NIL, the function DUE-P returns true.
+Return the entry, true and the agent; or NIL and false if there is none."
+  (flet ((due-post () (find-if due-p (home-outbox home) :key #'car)))
+    (let ((post (or (due-post)
+                    (progn (collect-posts home) (due-post)))))
+      (cond (post (setf (home-outbox home) (delete post (home-outbox home) :test #'eq :count 1))
+                  (values (cdr post) t (car post)))
+            (t (values nil nil nil))))))
 
 (defun posted-p (home)
   "True if some entry posted to HOME has not been applied yet."

@@ -111,7 +111,7 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
   "Charge steps in rollouts of PROJECTIONS to the plans that ask QUESTION, if steps have a budget."
   (count-steps (loop for projection in projections
                      sum (reduce #'+ (projection-rollouts projection) :key #'rollout-steps))
-               (interface-runner (wish-interface question))
+               (task-agent (wish-task question))
                (wish-task question)))
 
 (defun project-branch (question moment branch)
@@ -147,7 +147,7 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
   (grant-wish question
               (if (question-branches question)
                   (roll-index (length (question-branches question))
-                              (runner-dice (interface-runner (wish-interface question))))
+                              (agent-dice (task-agent (wish-task question))))
                   (projection-without-rollouts question))))
 
 (defun answer-by-rollouts (question)

@@ -57,11 +57,11 @@ outside of plans. After too many takeovers, let time pass."
         (runner (interface-runner interface))
         (same-plan-p (and older newer (eq (task-top older) (task-top newer)))))
     ;; Commands of plans that take a part from each other are no endless commands of one plan.
-    (unless same-plan-p (setf (runner-note runner 'commands) nil))
+    (unless same-plan-p (setf (agent-note runner 'commands) nil))
     (when (< *most-takeovers* (incf (cdr count)))
       (warn-of-takeovers interface (takeover-text resource older newer))
       ;; One plan has not waited for the tick; see COMMAND-COUNT-ENTRY.
-      (when same-plan-p (setf (runner-note runner 'cut-short) (plan-runner-tick runner)))
+      (when same-plan-p (setf (agent-note runner 'cut-short) (plan-runner-tick runner)))
       (exhaust-reaction runner))))
 
 (defun must-wait-for-tick-p (interface)
@@ -79,9 +79,9 @@ with class :TOO-MANY-COMMANDS. Commands of cleanups do not count.")
 (defun command-count-entry (runner task)
   "Return a cons of TASK, a top-level task of RUNNER, and the number of commands that TASK has
 issued in this tick. If takeovers cut short an earlier tick, its commands count, too."
-  (let ((tick (plan-runner-tick runner)) (note (runner-note runner 'commands)))
-    (unless (and note (member (first note) (list tick (runner-note runner 'cut-short))))
-      (setf note (setf (runner-note runner 'commands) (list tick))))
+  (let ((tick (plan-runner-tick runner)) (note (agent-note runner 'commands)))
+    (unless (and note (member (first note) (list tick (agent-note runner 'cut-short))))
+      (setf note (setf (agent-note runner 'commands) (list tick))))
     (setf (first note) tick)
     (or (assoc task (rest note))
         (first (push (cons task 0) (rest note))))))

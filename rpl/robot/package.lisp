@@ -47,7 +47,7 @@
                 #:next-wake-time #:outside-request-p #:runner-idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:skip-idle-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:runner-steps #:plan-runner-tick
-                #:runner-note #:fail #:current-task #:task #:task-p
+                #:agent-note #:runner-agent #:fail #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
@@ -58,7 +58,7 @@
                 #:pulse-of-command #:last-command #:last-pulse-tick #:endless-advice
                 #:+no-fluent+ #:robot-fluent-p #:plan-backtrace #:operator-called-p
                 #:task-awaiting
-                #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
+                #:report-end #:agent-lisps-dice #:reseed-agent #:digest-runner
                 #:print-tasks #:find-procedure
                 #:plan-trace #:valve #:make-valve #:valve-losers #:note-command
                 #:with-answer #:runner-in-use #:*step-plans* #:*plan-start-hooks*

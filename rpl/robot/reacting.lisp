@@ -127,8 +127,8 @@ plans have a separate random state, which forks copy. Otherwise return NIL: plan
 of the run share a random state."
   (let ((simulation (interface-simulation interface)) (runner (interface-runner interface)))
     (when (simulation-plans-dice-p simulation)
-      (or (runner-lisps-dice runner)
-          (setf (runner-lisps-dice runner)
+      (or (agent-lisps-dice (runner-agent runner))
+          (setf (agent-lisps-dice (runner-agent runner))
                 (seeded-random-state (+ (simulation-seed simulation)
                                         ;; How many robots come before it by full name.
                                         (or (position (interface-robot interface)

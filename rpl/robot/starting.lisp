@@ -181,7 +181,7 @@ return true. No other thread may touch the plans meanwhile."
       (plans-ready-p interface)))
 
 (defmethod participant-reseed ((interface interface) seed)
-  (reseed-runner (interface-runner interface) seed))
+  (reseed-agent (runner-agent (interface-runner interface)) seed))
 
 ;; The current step of a live plan cannot be waited for: then only whether it is at work counts.
 (defmethod participant-digest ((interface interface) digest)

@@ -5,7 +5,7 @@
 (export '(current-form form-text whole-form-text forms-under-way frames-by-expression frame
                        frame-state
           make-frame make-task node task-label evaporating-p part-of-p lineage frame-chain
-          frames-around under-way-p frame-p))
+          frames-around under-way-p frame-p task-runner))
 
 ;;; A plan is a graph of nodes, its expressions. A task runs one of them as a chain of frames, the
 ;;; innermost of which is the task's own FRAME. All state of a task is in its frames and their
@@ -59,7 +59,8 @@ MEMORY" :writable :export))
   (name nil t "the name of the task: its tag, the name of its procedure, or
 NIL" :writable :addition)
   (node nil node "the expression that the task runs" :writable)
-  (runner nil t "the plan runner that the task belongs to" :writable :export)
+  (agent nil (or null agent) "the agent that the task belongs to, NIL until the task
+starts" :writable :export)
   (serial 0 fixnum "the number of the task within its plan runner" :writable :addition)
   (state :created keyword "the task's state: :created, :ready, :running, :waiting, or at the end
 :succeeded, :failed or :evaporated" :writable :addition)
@@ -80,7 +81,7 @@ text; or NIL" :writable :export)
          "the timer that ends the task's wait at its time limit, or NIL" :writable :export)
   (cleaning '() list "the frames of the task that clean up, innermost first" :writable :export)
   (blocked 0 fixnum "the number of blocks that keep the task from running" :writable)
-  (round 0 fixnum "the round of its plan runner in which the task last ran" :writable)
+  (round 0 fixnum "the round of its agent in which the task last ran" :writable)
   (slice 0 fixnum "the number of steps that the task may still take in that round" :writable)
   (result nil t
           "the value of the task if it succeeded, or its failure if it failed" :writable :addition)
@@ -100,6 +101,16 @@ NIL" :writable :export)
          "the next older part of the same parent task, or NIL" :writable :export)
   (newer nil (or null task) :writable))
 (declaim-final frame task)
+
+(defun task-runner (task)
+  "Return the plan runner of TASK. Return NIL if TASK has not started."
+  (let ((agent (task-agent task)))
+    (and agent (agent-runner agent))))
+
+(declaim (inline %task-runner))
+(defun %task-runner (task)
+  "Return the plan runner of TASK, which has started."
+  (agent-runner (the agent (task-agent task))))
 
 (defmethod copy-plan-value ((task task) fork)
   (if (and (task-runner task) (not (home-forked-p (task-runner task) fork)))
