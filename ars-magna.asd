@@ -327,7 +327,7 @@
                  (:file "rpl-telling") (:file "rpl-kills") (:file "rpl-hostile")
                  (:file "rpl-views") (:file "rpl-named-policies") (:file "rpl-goals")
                  (:file "rpl-at-location") (:file "rpl-replacing") (:file "rpl-examples")
-                 (:file "rpl-robot-answers")
+                 (:file "rpl-robot-answers") (:file "rpl-agents")
                  (:file "seeing-robots") (:file "giving") (:file "rpl-robot") (:file "rpl-issue")
                  (:file "rpl-rushing") (:file "rpl-clashes") (:file "rpl-left")
                  (:file "rpl-robot-live") (:file "rpl-robot-published") (:file "rpl-gone")
