@@ -84,7 +84,7 @@
                  (:file "network") (:file "propagation") (:file "operators")))
    (:module "rpl/tasks" :serial t
     :components ((:file "package") (:file "queues") (:file "failure") (:file "agents")
-                 (:file "task") (:file "trace") (:file "runner") (:file "ready")
+                 (:file "task") (:file "extras") (:file "trace") (:file "runner") (:file "ready")
                  (:file "charging") (:file "tracing") (:file "machine") (:file "ending")
                  (:file "stepping") (:file "calls") (:file "procedure") (:file "report")
                  (:file "care") (:file "reacting") (:file "engine") (:file "blocking")

@@ -125,10 +125,15 @@ apply ENTRY only while the tasks of this agent of HOME may run."
 (defun take-posted-entry (home &optional (due-p (constantly t)))
   "Remove the oldest entry posted to HOME for whose agent, or NIL, the function DUE-P returns true.
 Return the entry, true and the agent; or NIL and false if there is none."
-  (flet ((due-post () (find-if due-p (home-outbox home) :key #'car)))
-    (let ((post (or (due-post)
-                    (progn (collect-posts home) (due-post)))))
-      (cond (post (setf (home-outbox home) (delete post (home-outbox home) :test #'eq :count 1))
+  (declare (type function due-p))
+  (flet ((due-post ()
+           (loop for post in (home-outbox home) when (funcall due-p (car post)) return post)))
+    (let* ((post (or (due-post)
+                     (and (home-inbox home)
+                          (progn (collect-posts home) (due-post)))))
+           (outbox (home-outbox home)))
+      (cond (post (setf (home-outbox home)
+                        (if (eq post (first outbox)) (rest outbox) (remove post outbox)))
                   (values (cdr post) t (car post)))
             (t (values nil nil nil))))))
 

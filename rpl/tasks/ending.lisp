@@ -26,9 +26,8 @@
               (and (eq state :failed) result)
               (and (eq how :succeeded) result))
   (setf (task-state task) state
-        (task-result task) result
         (task-frame task) nil
-        (task-value task) nil
+        (task-value task) result
         (task-signal task) nil)
   (decf (runner-alive (the plan-runner (%task-runner task))))
   (when (plusp (task-blocked task))

@@ -55,16 +55,19 @@ that no task loses its turn."
 
 (defun work-left-p (agent)
   "True if AGENT is not out and, in this round, can run a task or deliver a notice."
-  (and (or (task-queued-p agent) (due-notices (agent-runner agent)))
-       (not (agent-out-p agent))))
+  (let ((runner (agent-runner agent)))
+    (and (or (task-queued-p agent)
+             (and (runner-notices runner) (due-notices runner)))
+         (not (agent-out-p agent)))))
 
 (defun run-round (runner agents)
   "Let AGENTS, agents of RUNNER, take turns until no ready task has steps left in its slice."
-  (mapc #'begin-round agents)
-  (mapc #'take-turn agents)
-  (loop while (some #'work-left-p agents)
-        do (dolist (agent agents)
-             (when (work-left-p agent) (take-turn agent))))
+  (dolist (agent agents) (begin-round agent))
+  (dolist (agent agents) (take-turn agent))
+  (when (rest agents)
+    (loop while (loop for agent in agents thereis (work-left-p agent))
+          do (dolist (agent agents)
+               (when (work-left-p agent) (take-turn agent)))))
   (when (and (null agents) (runner-ends-requested runner)) (end-requested-tasks runner)))
 
 (defun renew-slices (agents)
@@ -92,25 +95,28 @@ returns true. Return true if there is one. Errors become messages."
       t)))
 
 (defun batch-due-p (agent)
-  "True if AGENT does not keep posts from being applied at the end of its round."
+  "True if AGENT, at the end of its round, does not keep posts from being applied."
   (or (null (agent-spent agent))
       (null (agent-budget agent))
       (not (agent-charged-p agent))
-      (agent-out-p agent)
       (>= (- (agent-steps agent) (agent-batch-applied-at agent)) +steps-before-changes+)))
 
 (defun apply-due-batch (runner agents)
   "Apply the next posted batch if it is due at the end of a round of AGENTS, all agents of RUNNER.
 Return true if so."
-  (when (and (every #'batch-due-p agents)
-             (not (and agents (every #'agent-out-p agents))))
+  (let ((free-p (null agents)))
     (dolist (agent agents)
       (unless (agent-out-p agent)
-        (setf (agent-batch-applied-at agent) (agent-steps agent))))
-    (flet ((due-p (agent)
-             (not (and agent (agent-out-p agent) (member agent agents)))))
-      (declare (dynamic-extent #'due-p))
-      (apply-next-batch runner #'due-p))))
+        (unless (batch-due-p agent) (return-from apply-due-batch nil))
+        (setf free-p t)))
+    (when free-p
+      (dolist (agent agents)
+        (unless (agent-out-p agent)
+          (setf (agent-batch-applied-at agent) (agent-steps agent))))
+      (when (posted-p runner)
+        (apply-next-batch runner (lambda (agent)
+                                   (not (and agent (agent-out-p agent)
+                                             (member agent agents)))))))))
 
 ;;; Reactions.
 
@@ -128,7 +134,7 @@ agents, run only their tasks, and apply no posts. Return :budget if an agent is 
       (cond ((and (null only) (apply-due-batch runner agents)))
             ((renew-slices agents))
             ((and (null only) (not (eq known (runner-agents runner)))))
-            (t (return (if (some #'agent-out-p agents) :budget :idle)))))))
+            (t (return (if (loop for agent in agents thereis (agent-out-p agent)) :budget :idle)))))))
 
 (defun form-using-operator (name form)
   (cond ((operator-called-p form name) form)
@@ -173,7 +179,8 @@ often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
   (with-owned-home (runner)
     (prog1 (let ((*leaves-offer-restarts* *break-on-user-error*))
              (run-rounds runner only))
-      (mapc #'warn-of-runaway (remove-if-not #'runaway-p (or only (runner-agents runner)))))))
+      (dolist (agent (or only (runner-agents runner)))
+        (when (runaway-p agent) (warn-of-runaway agent))))))
 
 (defun react-to-all (runner)
   "Let RUNNER run its ready tasks and apply all posts, one after the other, and return :idle. If the

@@ -35,6 +35,7 @@
         until (or (null each) (task-ending-p each))
         thereis (plusp (task-blocked each))))
 
+(declaim (inline slice-spent-p))
 (defun slice-spent-p (task)
   (and (= (task-round task) (agent-round (task-agent task)))
        (<= (task-slice task) 0)))
@@ -62,21 +63,24 @@
     (when (eq (task-state task) :ready) (make-ready task))))
 
 (defun requeue-spent-tasks (agent)
-  (requeue (nreverse (shiftf (agent-spent agent) '()))))
+  (when (agent-spent agent)
+    (requeue (nreverse (shiftf (agent-spent agent) '())))))
 
 (defun requeue-held-tasks (agent)
   "Queue again those ready tasks of AGENT that were put aside because they were blocked."
-  (requeue (nreverse (shiftf (agent-held agent) '()))))
+  (when (agent-held agent)
+    (requeue (nreverse (shiftf (agent-held agent) '())))))
 
 (defun task-queued-p (agent)
   "True if the ready queues of AGENT have tasks, not counting those that were put aside."
   (and (plusp (logandc2 (agent-mask agent) +interrupt-bit+))
-       (some (lambda (ring) (plusp (ring-count ring))) (agent-rings agent))))
+       (loop for ring across (agent-rings agent) thereis (plusp (ring-count ring)))))
 
 (defun any-task-ready-p (runner)
-  (flet ((ready-p (task) (eq (task-state task) :ready)))
-    (some (lambda (agent) (or (task-queued-p agent) (some #'ready-p (agent-spent agent))))
-          (runner-agents runner))))
+  (loop for agent in (runner-agents runner)
+        thereis (or (task-queued-p agent)
+                    (loop for task in (agent-spent agent)
+                          thereis (eq (task-state task) :ready)))))
 
 (defun only-ready-task-p (task)
   "True if no other task of the agent of TASK, at its level or above, is ready."
