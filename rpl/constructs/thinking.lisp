@@ -19,7 +19,7 @@
 (defun think-for (task ticks alone)
   "Make TASK think for TICKS. If ALONE is true, no other task runs meanwhile."
   (when alone (stop-agent (task-agent task) ticks))
-  (park task (start-timer task ticks))
+  (park-for task ticks)
   +parked+)
 
 (defun takes-time-p (task ticks)

@@ -98,7 +98,8 @@ the failure as steps that would take as long, so that a plan that only fails use
   "Rebuild RUNNER's timers from its old timers and the timers of TASKS. Drop timers of ended tasks."
   (let* ((heap (timers-heap (runner-timers runner)))
          (timers (remove-duplicates (append (coerce heap 'list)
-                                            (remove nil (mapcar #'task-timer tasks)))
+                                            (mapcar #'task-timer tasks)
+                                            (mapcar #'task-awaiting tasks))
                                     :test #'eq)))
     (setf (fill-pointer heap) 0)
     (dolist (timer timers)

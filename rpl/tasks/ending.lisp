@@ -113,8 +113,9 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
         (timer (shiftf (task-timer task) nil)))
     (cond ((null awaited))
           ((watcher-p awaited) (unwatch awaited))
+          ((timer-p awaited) (cancel-timer awaited (runner-timers (%task-runner task))))
           (t (remove-waiting-task task awaited)))
-    (when timer (cancel-timer timer (runner-timers (task-runner task))))))
+    (when timer (cancel-timer timer (runner-timers (%task-runner task))))))
 
 (defun evaporate-now (task)
   "Let TASK evaporate at once, or start its cleanup. TASK must not be running or have children."
@@ -164,7 +165,7 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
         (t (stop-waiting task)
            (evaporate-with-parts task)))
   ;; A blocked task may run again to clean up.
-  (requeue-held-tasks (task-agent task)))
+  (when (agent-held (task-agent task)) (requeue-held-tasks (task-agent task))))
 
 (defun evaporate-with-parts (task)
   "Evaporate the children of TASK, and then TASK. TASK must not be running."

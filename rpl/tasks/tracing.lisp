@@ -4,7 +4,7 @@
 
 (export '(note-command note-event start-trace stop-trace with-answer note-event))
 
-;;; *ASKER* is the agent of an event: the task at work, or the caller whose post is applied.
+;;; *ASKER* is the cause of an event: the task at work, or the caller whose post is applied.
 
 (defmacro note-event (task event &optional subject value)
   "If there is a trace, record in the trace that EVENT happened to TASK. SUBJECT and VALUE are as in
