@@ -46,9 +46,19 @@ that no task loses its turn."
   (unless (shiftf (agent-broken-off-p agent) nil)
     (incf (agent-round agent))))
 
+(defmacro with-dice-of-agent ((agent) &body body)
+  "Run BODY with the random state of AGENT for CL:RANDOM. If AGENT is NIL, or has none, just run
+BODY, which is faster."
+  (once-only (agent)
+    `(flet ((body () ,@body))
+       (declare (dynamic-extent #'body))
+       (if (and ,agent (agent-lisps-dice ,agent))
+           (with-random-state ((agent-lisps-dice ,agent)) (body))
+           (body)))))
+
 (defun take-turn (agent)
   "Run the ready tasks of AGENT, even if some meet trouble."
-  (with-random-state ((agent-lisps-dice agent))
+  (with-dice-of-agent (agent)
     (let ((outcome (loop thereis (call-handling-trouble agent #'run-ready-tasks))))
       (when (and (eq outcome :budget) (agent-charged-p agent))
         (setf (agent-broken-off-p agent) t)))))
@@ -87,7 +97,7 @@ that no task loses its turn."
 returns true. Return true if there is one. Errors become messages."
   (multiple-value-bind (entry there agent) (take-posted-entry runner due-p)
     (when there
-      (with-random-state ((and agent (agent-lisps-dice agent)))
+      (with-dice-of-agent (agent)
         (with-owned-home (runner)
           (if (functionp entry)
               (call-user-code entry "a call posted to a plan runner")
@@ -113,10 +123,10 @@ Return true if so."
       (dolist (agent agents)
         (unless (agent-out-p agent)
           (setf (agent-batch-applied-at agent) (agent-steps agent))))
-      (when (posted-p runner)
-        (apply-next-batch runner (lambda (agent)
-                                   (not (and agent (agent-out-p agent)
-                                             (member agent agents)))))))))
+      (flet ((due-p (agent)
+               (not (and agent (agent-out-p agent) (member agent agents)))))
+        (declare (dynamic-extent #'due-p))
+        (and (posted-p runner) (apply-next-batch runner #'due-p))))))
 
 ;;; Reactions.
 
@@ -132,7 +142,7 @@ agents, run only their tasks, and apply no posts. Return :budget if an agent is 
                 agents (if (rest all) (agents-in-order (runner-client runner) all) all))))
       (run-round runner agents)
       (cond ((and (null only) (apply-due-batch runner agents)))
-            ((renew-slices agents))
+            ((and (loop for agent in agents thereis (agent-spent agent)) (renew-slices agents)))
             ((and (null only) (not (eq known (runner-agents runner)))))
             (t (return (if (loop for agent in agents thereis (agent-out-p agent)) :budget :idle)))))))
 

@@ -46,6 +46,7 @@ frame, or NIL" :writable :export)
   (warned '() list :writable)
   (busy-p (constantly nil) function :writable)
   (on-end #'identity function :writable))
+(declaim-final plan-runner)
 
 (define-shared-slots plan-runner warned)
 
