@@ -104,6 +104,9 @@ returns true. Return true if there is one. Errors become messages."
               (call-user-code #'apply-settings "a batch posted to a plan runner" entry))))
       t)))
 
+(defun some-out-p (agents)
+  (loop for agent in agents thereis (agent-out-p agent)))
+
 (defun batch-due-p (agent)
   "True if AGENT, at the end of its round, does not keep posts from being applied."
   (or (null (agent-spent agent))
@@ -142,9 +145,9 @@ agents, run only their tasks, and apply no posts. Return :budget if an agent is 
                 agents (if (rest all) (agents-in-order (runner-client runner) all) all))))
       (run-round runner agents)
       (cond ((and (null only) (apply-due-batch runner agents)))
-            ((and (loop for agent in agents thereis (agent-spent agent)) (renew-slices agents)))
+            ((renew-slices agents))
             ((and (null only) (not (eq known (runner-agents runner)))))
-            (t (return (if (loop for agent in agents thereis (agent-out-p agent)) :budget :idle)))))))
+            (t (return (if (some-out-p agents) :budget :idle)))))))
 
 (defun form-using-operator (name form)
   (cond ((operator-called-p form name) form)
