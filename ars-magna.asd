@@ -47,7 +47,8 @@
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "bodies") (:file "odometer")
                  (:file "sight") (:file "designator") (:file "motion") (:file "tracks")
-                 (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes") (:file "rays")
+                 (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes")
+                 (:file "messages") (:file "rays")
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "tending")
                  (:file "soundness")))
    (:module "src/command" :serial t
@@ -56,7 +57,7 @@
                  (:file "driving") (:file "hands") (:file "inserting") (:file "giving")
                  (:file "patterns")
                  (:file "manipulations") (:file "manipulating") (:file "looking")
-                 (:file "withdrawing") (:file "approaching") (:file "thinking")
+                 (:file "withdrawing") (:file "approaching") (:file "thinking") (:file "sending")
                  (:file "soundness")))
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "run")
@@ -107,7 +108,8 @@
    (:module "rpl/robot" :serial t
     :components ((:file "package") (:file "fluents") (:file "interface") (:file "under-way")
                  (:file "clashes") (:file "reacting") (:file "forking") (:file "thread")
-                 (:file "starting") (:file "outcomes") (:file "commands") (:file "runs")
+                 (:file "starting") (:file "outcomes") (:file "commands") (:file "messages")
+                 (:file "runs")
                  (:file "warnings") (:file "seeing")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors")

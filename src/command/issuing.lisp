@@ -285,9 +285,18 @@ plans, because running a plan passes ticks."
   (let ((reader (command-occupies command)))
     (if reader (funcall reader resource) resource)))
 
+(defun arguments-to-issue (command resource arguments)
+  "Return ARGUMENTS of COMMAND on RESOURCE with their lists and vectors copied, and checked by the
+function that COMMAND names for this."
+  (let ((arguments (if (some (lambda (argument) (typep argument '(or cons vector))) arguments)
+                       (copy-argument (command-name command) "arguments" arguments)
+                       arguments))
+        (checker (command-checker command)))
+    (if checker (apply checker resource arguments) arguments)))
+
 (defun issue (command resource arguments continuation)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked. Copy the lists in ARGUMENTS.
-CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
+  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked. Copy lists and vectors in
+ARGUMENTS. CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
 if the robot's run is over, or if an argument belongs to another run or another robot."
   (check-not-retired resource (command-name command))
   (check-same-run command resource arguments)
@@ -295,9 +304,7 @@ if the robot's run is over, or if an argument belongs to another run or another 
   (let* ((robot (resource-robot resource))
          (world (robot-world robot))
          (timeline (world-timeline world))
-         (arguments (if (some #'consp arguments)
-                        (copy-argument (command-name command) "arguments" arguments)
-                        arguments)))
+         (arguments (arguments-to-issue command resource arguments)))
     (count-request (occupied-resource command resource))
     (warn-if-interrupting command (occupied-resource command resource) arguments timeline)
     (warn-if-repeating command (occupied-resource command resource) arguments timeline)
