@@ -229,7 +229,7 @@
       :components ((:file "own-lines") (:file "robots-lines") (:file "running-lines")
                    (:file "status-lines")
                    (:file "map-lines") (:file "world-lines") (:file "plan-lines")
-                   (:file "acting-lines") (:file "topics") (:file "help")
+                   (:file "acting-lines") (:file "message-lines") (:file "topics") (:file "help")
                    (:file "picture-lines") (:file "film-lines") (:file "plot-lines")
                    (:file "other-runs")))
      (:module "shell" :serial t
@@ -363,6 +363,7 @@
                  (:file "kinds") (:file "digests") (:file "same-bits") (:file "runs")
                  (:file "runs-replaced") (:file "rewinding")
                  (:file "several-robots") (:file "several-joining")
+                 (:file "messages") (:file "messages-kept")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")

@@ -119,8 +119,9 @@ position. TOLD lists the names of the arguments."
 (defun may-replace-p (command resource arguments before)
   "True if COMMAND may be meant to replace BEFORE, an operation of the same command: RESOURCE is a
 part, ARGUMENTS are empty or differ from those of BEFORE, or the world is a resident world, where
-BEFORE may be left over from earlier work."
+BEFORE may be left over from earlier work. No message replaces another."
   (and (eq command (operation-command before))
+       (not (radio-p resource))
        (not (and (robot-p resource)
                  arguments
                  (equal arguments (operation-arguments before))

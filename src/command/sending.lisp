@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.command)
 
+(export '(write-datum-safely))
+
 ;;; ROBOT-SEND occupies the robot's radio, not its body. The sender is not told whether a message has
 ;;; arrived: as with a real radio, the receiver must answer.
 
@@ -9,7 +11,7 @@
   (lambda (value)
     (or (robot-p value)
         (and value (typep value '(or symbol string)))))
-  "another robot of the run, the name of one, or :all for every other robot")
+  "another robot of the run, its name, or :all for all others")
 
 (defun reject-recipient (to robots)
   (reject-argument 'robot-send 'to to
@@ -44,13 +46,11 @@ and MISUSE, but not while the run is repeated."
             (range (double radio-range*)))
         (<= (+ (* dx dx) (* dy dy)) (* range range)))))
 
-(defun receivers (sender to)
-  "Return a list of the robots that a message of SENDER to TO, a name or :ALL, can reach."
-  (remove-if-not (lambda (robot)
-                   (and (not (eq robot sender))
-                        (or (eq to :all) (eq to (robot-name robot)))
-                        (in-radio-range-p sender robot)))
-                 (robots-in-order (robot-world sender))))
+(defun receives-p (robot sender to)
+  "True if ROBOT can receive a message of SENDER to TO, a name or :ALL."
+  (and (not (eq robot sender))
+       (or (eq to :all) (eq to (robot-name robot)))
+       (in-radio-range-p sender robot)))
 
 (defun arriving-message (message dice)
   "Return MESSAGE as it arrives, and true; or NIL and NIL if it is lost."
@@ -61,22 +61,30 @@ and MISUSE, but not while the run is repeated."
 (defun transmit (operation sender to message)
   "Let MESSAGE of SENDER arrive at TO after the delay of the radio, unless it is lost."
   (let ((seed (seed-of-next-message sender)) (agenda (operation-agenda operation)))
-    (dolist (robot (receivers sender to))
-      (multiple-value-bind (message arrives-p)
-          (arriving-message message (make-dice (mixed-word seed (resource-key robot))))
-        (when arrives-p
-          (requeue-event agenda
-                         (make-arrival (robot-world sender) (robot-name robot) message
-                                       (robot-name sender) (agenda-tick agenda))
-                         (ticks-for radio-delay*)))))))
+    (dolist (robot (robots-in-order (robot-world sender)))
+      (when (receives-p robot sender to)
+        (multiple-value-bind (message arrives-p)
+            (arriving-message message (make-dice (mixed-word seed (resource-key robot))))
+          (when arrives-p
+            (requeue-event agenda
+                           (make-arrival (robot-world sender) (robot-name robot) message
+                                         (robot-name sender) (agenda-tick agenda))
+                           (ticks-for radio-delay*))))))))
+
+(defun write-datum-safely (stream datum &rest parameters)
+  "Write DATUM to STREAM as SAFE-TEXT shows it. FORMAT calls this function, so that a message is only
+printed when somebody reads it."
+  (declare (ignore parameters))
+  (write-string (safe-text datum) stream))
 
 (define-command robot-send (operation (robot robot)
-                            (to recipient "another robot of the run, its name, or :all")
-                            (message message "plain data: a number, name, string, list ..."))
+                            (to recipient "another robot of the run, its name, or :all for all others")
+                            (message message "plain data: numbers, symbols, strings, characters, lists, vectors"))
     ()
     ((:family :messages) (:delay 1) (:occupies robot-radio) (:arguments check-message)
      (:report () (destructuring-bind (to message) (operation-arguments operation)
-                   (format nil "Robot sent ~A to ~(~A~)" (safe-text message) to))))
+                   (phrase "Robot sent ~/ars-magna.command:write-datum-safely/ to ~(~A~)"
+                           message to))))
     "Send MESSAGE by radio to another robot, or to all others. It arrives in the receivers' mailboxes
 RADIO-DELAY* ticks later, see NEXT-MESSAGE, unless they are out of RADIO-RANGE* or it is lost. The
 robot's body and parts continue. A newer ROBOT-SEND in the same tick interrupts an older one."

@@ -3,7 +3,7 @@
 (in-package :ars-magna.robot)
 
 (export '(message-datum-p put-message *message-hooks* make-arrival arrival-p arrival-fits-p
-          seed-of-next-message))
+          seed-of-next-message last-arrivals))
 
 ;;; Messages are state of the run, and journals and saved runs contain them. So they are plain data,
 ;;; which no code modifies: senders give copies, and receivers get copies. A message on its way is an
@@ -48,11 +48,18 @@ vectors of these, of limited size."
       (check datum 1)
       t)))
 
+(defun unsendable-text (datum)
+  "Return a text about what to send instead of DATUM."
+  (typecase datum
+    ((or sequence number symbol)
+     (format nil "at most ~D elements and characters, nested at most ~D deep, lists without a ~
+                  dotted tail, simple vectors, finite numbers, symbols with a package"
+             +longest-message+ +deepest-message+))
+    (t "send the name of a robot or thing, or other data about it, not the object")))
+
 (define-argument-type 'message #'message-datum-p
-  (format nil "plain data: numbers, symbols, characters, strings, and lists and simple vectors of ~
-               these, of at most ~D elements and characters, nested at most ~D deep. Send the name ~
-               of a robot or thing, not the object"
-          +longest-message+ +deepest-message+))
+  "plain data: numbers, symbols, strings, characters, lists, vectors"
+  #'unsendable-text)
 
 ;;; Mailboxes.
 
@@ -76,20 +83,35 @@ vectors of these, of limited size."
   (let ((seed (world-seed (robot-world robot))))
     (mixed-word (mixed-word seed (robot-key robot)) (incf (radio-sent (robot-radio robot))))))
 
+(defun note-last-arrival (radio entry tick)
+  (let ((before (radio-last-arrivals radio)))
+    (setf (radio-last-arrivals radio)
+          (list* tick entry (and (eql tick (first before)) (rest before))))))
+
+(defun last-arrivals (robot tick)
+  "Return a list of the messages (message sender tick) that arrived at ROBOT in TICK, oldest first."
+  (let ((arrivals (radio-last-arrivals (robot-radio robot))))
+    (and (eql tick (first arrivals)) (reverse (rest arrivals)))))
+
+(defun warn-of-full-mailbox (robot)
+  (warn-once (list :mailbox (robot-name robot)) (robot-world robot)
+             (format nil "The mailbox of ~A is full, so the oldest message is dropped. Take messages ~
+                          with NEXT-MESSAGE, or raise mailbox-size*, which is ~D."
+                     robot mailbox-size*)))
+
 (defun put-message (robot message sender tick)
   "Put MESSAGE, which SENDER sent in TICK, into the mailbox of ROBOT. If the mailbox is full, drop the
 oldest messages, count them, and warn once."
   (let* ((radio (robot-radio robot))
+         (entry (list message sender tick))
          (before (radio-mailbox radio))
          (surplus (- (1+ (length before)) mailbox-size*)))
     (when (plusp surplus)
-      (incf (radio-dropped radio) surplus)
-      (warn-once (list :mailbox (robot-name robot)) (robot-world robot)
-                 (format nil "The mailbox of ~A is full, so the oldest message is dropped. Take ~
-                              messages with NEXT-MESSAGE, or raise mailbox-size*, which is ~D."
-                         robot mailbox-size*)))
+      (when (zerop (radio-dropped radio)) (warn-of-full-mailbox robot))
+      (incf (radio-dropped radio) surplus))
     (setf (radio-mailbox radio)
-          (append (nthcdr (max 0 surplus) before) (list (list message sender tick))))
+          (append (nthcdr (max 0 surplus) before) (list entry)))
+    (note-last-arrival radio entry (world-tick (robot-world robot)))
     (call-listeners *message-hooks* robot)))
 
 (defun copied-message (message)

@@ -48,7 +48,10 @@
    (sent 0 (unsigned-byte 60) "how many messages the robot has sent" :export)
    (mailbox '() list "the messages that have arrived and were not taken, the oldest first: lists
 (message sender tick)" :shared :export)
-   (dropped 0 (unsigned-byte 60) "how many messages were dropped because the mailbox was full" :export)))
+   (dropped 0 (unsigned-byte 60) "how many messages were dropped because the mailbox was full" :export))
+  (:memory
+   (last-arrivals '() list "the last tick in which messages arrived, followed by these messages, the
+newest first" :shared :export)))
 
 (public robot)
 ;; See reading 92.

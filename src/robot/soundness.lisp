@@ -106,6 +106,8 @@
                                         (message-datum-p (first entry))))
                                  (radio-mailbox radio))
                "the mailbox of ~A is invalid" robot)
+    (must-hold (proper-list-of-p #'identity (radio-last-arrivals radio))
+               "the last messages of ~A are invalid" robot)
     (check-pending-event radio)))
 
 (defun check-start-pose (robot world)
