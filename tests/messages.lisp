@@ -9,11 +9,11 @@
 
 (robot:defrobot heron (moor (5 5) 0))
 (robot:defrobot snipe (moor (8 9) 0))
-(robot:defrobot crane (moor (25 5) 0))
+(robot:defrobot curlew (moor (25 5) 0))
 
 (defmacro on-moor ((&rest options) &body body)
-  "Run BODY with three robots, HERON, SNIPE and CRANE, without noise."
-  `(run:with-simulation ((heron snipe crane) :clean t ,@options) ,@body))
+  "Run BODY with three robots, HERON, SNIPE and CURLEW, without noise."
+  `(run:with-simulation ((heron snipe curlew) :clean t ,@options) ,@body))
 
 (defun mail-of (robot) (mapcar #'first (robot:robot-messages robot)))
 
@@ -53,7 +53,7 @@
     (let ((seen :none))
       (command:robot-send heron snipe :go)
       (run:run-ticks 1)
-      (command:robot-turn crane 1/10
+      (command:robot-turn curlew 1/10
                           (lambda (&rest results)
                             (declare (ignore results))
                             (setf seen (list (mail-of snipe) (run:simulation-tick)))))
@@ -78,13 +78,13 @@
       (let ((taken (robot:next-message snipe)))
         (is (equalp '(1 (2) #(3) "four") taken))
         (setf (first (second taken)) :changed)
-        (setf (first (first (first (robot:robot-messages crane)))) :changed)
-        (is (equalp '(1 (2) #(3) "four") (robot:next-message crane)))))))
+        (setf (first (first (first (robot:robot-messages curlew)))) :changed)
+        (is (equalp '(1 (2) #(3) "four") (robot:next-message curlew)))))))
 
 (test message.to-all-reaches-all-others
   (on-moor ()
     (send-and-pass heron :all :go)
-    (is (equal '(() (:go) (:go)) (mapcar #'mail-of (list heron snipe crane)))))
+    (is (equal '(() (:go) (:go)) (mapcar #'mail-of (list heron snipe curlew)))))
   (run:with-simulation (heron)
     (is (equal '(nil) (answer-of 'command:robot-send heron :all :go)))
     (run:run-ticks 5)
@@ -95,7 +95,7 @@
     (dolist (name (list snipe 'snipe "snipe" :snipe "ARS-MAGNA.TESTS::SNIPE"))
       (send-and-pass heron name :go))
     (is (equal '(:go :go :go :go :go) (mail-of snipe)))
-    (is (null (mail-of crane)))))
+    (is (null (mail-of curlew)))))
 
 (test messages.cross-in-one-tick
   (on-moor ()
@@ -116,12 +116,12 @@
   (on-moor (:seed 3)
     (let ((firsts '()))
       (loop repeat 60
-            do (command:robot-send heron crane 'heron)
-               (command:robot-send snipe crane 'snipe)
+            do (command:robot-send heron curlew 'heron)
+               (command:robot-send snipe curlew 'snipe)
                (run:run-ticks 2)
-               (push (robot:next-message crane) firsts)
+               (push (robot:next-message curlew) firsts)
                (is (eq (first firsts) (first-in-turn (1- (run:simulation-tick)))))
-               (robot:next-message crane))
+               (robot:next-message curlew))
       (is (< 15 (count 'heron firsts) 45)))))
 
 ;;; The radio, and nothing else.
@@ -142,10 +142,10 @@
   (on-moor ()
     (let ((codes '()))
       (command:robot-send heron snipe 1 (lambda (err robot) (push (list err robot) codes)))
-      (command:robot-send heron crane 2)
+      (command:robot-send heron curlew 2)
       (run:run-ticks 2)
       (is (equal (list (list :interrupt heron)) codes))
-      (is (equal '(() (2)) (mapcar #'mail-of (list snipe crane)))))))
+      (is (equal '(() (2)) (mapcar #'mail-of (list snipe curlew)))))))
 
 (test robot-send.warns-of-two-in-a-tick
   (on-moor ()
@@ -159,15 +159,15 @@
 (test range.is-that-of-the-moment-of-sending
   (on-moor (:parameters '((base:radio-range* 5)))
     (send-and-pass heron :all 1)
-    (is (equal '((1) ()) (mapcar #'mail-of (list snipe crane))))
-    (robot:place-robot crane 8 5 0)
-    (send-and-pass heron crane 2 1)
-    (robot:place-robot crane 30 5 0)
+    (is (equal '((1) ()) (mapcar #'mail-of (list snipe curlew))))
+    (robot:place-robot curlew 8 5 0)
+    (send-and-pass heron curlew 2 1)
+    (robot:place-robot curlew 30 5 0)
     (run:run-ticks 1)
-    (is (equal '(2) (mail-of crane)))
+    (is (equal '(2) (mail-of curlew)))
     (setf base:radio-range* nil)
-    (send-and-pass heron crane 3)
-    (is (equal '(2 3) (mail-of crane)))))
+    (send-and-pass heron curlew 3)
+    (is (equal '(2 3) (mail-of curlew)))))
 
 (defun arrivals-among (count seed &rest parameters)
   "Return how many of COUNT messages arrive intact, and how many are garbled."
@@ -176,11 +176,6 @@
     (loop repeat count do (send-and-pass heron snipe :go 1))
     (run:run-ticks 1)
     (values (count :go (mail-of snipe)) (count :garbled (mail-of snipe)))))
-
-(defun within-binomial-p (count trials probability)
-  "True if COUNT of TRIALS is within four standard deviations of what PROBABILITY leads to expect."
-  (<= (abs (- count (* trials probability)))
-      (* 4 (sqrt (* trials probability (- 1 probability))))))
 
 (test noise.follows-its-binomial-law
   (loop for (loss garbling) in '((1/10 0) (0 1/4) (3/10 1/2))
@@ -212,7 +207,7 @@
              (mail-of (robot:find-robot 'snipe)))))
     (let ((mail (mail '(heron snipe))))
       (is (< 10 (length mail) 30))
-      (is (equal mail (mail '(crane snipe heron)))))))
+      (is (equal mail (mail '(curlew snipe heron)))))))
 
 (test noise.depends-on-the-seed
   (is (/= (arrivals-among 300 1 '(base:prob-lose-message* 1/2))
@@ -241,13 +236,13 @@
 (test robot-send.refuses-recipients-with-a-remedy
   (on-moor ()
     (flet ((is-refused (text to) (is (search text (send-refusal to 1)) "~A" (send-refusal to 1))))
-      (is-refused "another robot than the sender: snipe, crane, or :all" heron)
+      (is-refused "another robot than the sender: curlew, snipe, or :all" heron)
       (is-refused "another robot than the sender: " 'heron)
       (is-refused "There is no robot in this run called stork" 'stork)
       (is-refused "another robot of the run, its name, or :all" 7)
       (is-refused "another robot of the run, its name, or :all" nil)
-      (run:with-simulation (crane)
-        (is (search "belongs to another run" (send-refusal crane 1))))))
+      (run:with-simulation (curlew)
+        (is (search "belongs to another run" (send-refusal curlew 1))))))
   (run:with-simulation (heron)
     (is (search "this run has only one" (send-refusal heron 1)))))
 

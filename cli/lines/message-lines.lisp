@@ -4,7 +4,7 @@
 
 ;;; A line MESSAGES ON in any session of this process shows arrivals in all of them.
 
-(defvar *show-arrivals-p* nil "When true, a message is queued for each message that robots receive.")
+(defvar *show-arrivals-p* nil "When true, each message that a robot receives is shown.")
 
 (defun show-arrivals (robot)
   "If asked for, queue a message about the newest message that has arrived at ROBOT."

@@ -15,13 +15,14 @@
 (defun rpl-next-message ()
   "Take the oldest message from the mailbox of the plans' robot. Return the message, the name of its
 sender and the tick in which it was sent; or NIL if the mailbox is empty. See NEXT-MESSAGE. To wait
-for a message: (if (null (rpl-messages)) (wait-for robot-heard*)). Signals MISUSE without a robot."
+for a message: (if (null (rpl-messages)) (wait-for robot-heard*)). Signals MISUSE
+without a robot."
   (next-message (rpl-robot)))
 
 (addition rpl-messages)
 (defun rpl-messages ()
-  "Return a list of the messages in the mailbox of the plans' robot, which keeps them: lists (message
-sender tick), the oldest first. Signals MISUSE without a robot."
+  "Return a list of the messages in the mailbox of the plans' robot, which keeps them: lists
+(message sender tick), the oldest first. Signals MISUSE without a robot."
   (robot-messages (rpl-robot)))
 
 ;;; The simulator calls this in its own thread, inside the tick in which the message arrives.

@@ -27,7 +27,8 @@
   (prompt-name "" string "the name of the command at the prompt, in upper case" :addition)
   (prefix "" string "the word that the command's messages begin with" :addition)
   (origin "" string "the name for the command's continuations in messages")
-  (family nil symbol ":MOVING, :LOOKING, :HANDLING, :MANIPULATING, :THINKING or :MESSAGES" :addition)
+  (family nil symbol ":MOVING, :LOOKING, :HANDLING, :MANIPULATING, :THINKING
+or :MESSAGES" :addition)
   (section nil (or null string)
            "the section of the manual that describes the command, or NIL" :addition)
   (documentation "" string "the sentence that says what the command does" :addition)

@@ -73,7 +73,8 @@ or NIL."
   "Return two values: the name of the command that RESOURCE, a robot or part, executes or is about
 to begin; and who issued the command, a string such as \"the prompt\", \"the plan fetch\", \"the
 continuation of robot-turn\" or \"Lisp (main thread)\". A camera that only tracks executes
-CAMERA-TRACK, and a robot that only thinks or sends executes THINK or ROBOT-SEND. Return NIL if RESOURCE executes no
+CAMERA-TRACK, and a robot that only thinks or sends executes THINK or
+ROBOT-SEND. Return NIL if RESOURCE executes no
 command. A newer command always interrupts an older command."
   (check-resource 'under-way resource)
   (let ((occupant (current-request resource)))

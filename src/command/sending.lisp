@@ -4,8 +4,8 @@
 
 (export '(write-datum-safely))
 
-;;; ROBOT-SEND occupies the robot's radio, not its body. The sender is not told whether a message has
-;;; arrived: as with a real radio, the receiver must answer.
+;;; ROBOT-SEND occupies the robot's radio, not its body. The sender is not told whether a message
+;;; has arrived: as with a real radio, the receiver must answer.
 
 (define-argument-type 'recipient
   (lambda (value)
@@ -21,8 +21,8 @@
 
 ;; The robot may have left since the request was recorded.
 (defun recipient-named (name sender)
-  "Return the name, a symbol, of the robot in the run of SENDER that NAME means. Signals UNKNOWN-NAME
-and MISUSE, but not while the run is repeated."
+  "Return the name, a symbol, of the robot in the run of SENDER that NAME means. Signals
+UNKNOWN-NAME and MISUSE, but not while the run is repeated."
   (let* ((world (robot-world sender)) (meant (robots-meant name (world-robots world))))
     (cond ((and meant (null (rest meant))) (robot-name (first meant)))
           ((and (symbolp name) (eq *repeated-timeline* (world-timeline world))) name)
@@ -72,22 +72,25 @@ and MISUSE, but not while the run is repeated."
                            (ticks-for radio-delay*))))))))
 
 (defun write-datum-safely (stream datum &rest parameters)
-  "Write DATUM to STREAM as SAFE-TEXT shows it. FORMAT calls this function, so that a message is only
-printed when somebody reads it."
+  "Write DATUM to STREAM as SAFE-TEXT shows it. FORMAT calls this function, so a message is printed
+only when it is shown."
   (declare (ignore parameters))
   (write-string (safe-text datum) stream))
 
 (define-command robot-send (operation (robot robot)
-                            (to recipient "another robot of the run, its name, or :all for all others")
-                            (message message "plain data: numbers, symbols, strings, characters, lists, vectors"))
+                            (to recipient
+                             "another robot of the run, its name, or :all for all others")
+                            (message message
+                             "plain data: numbers, symbols, strings, characters, lists, vectors"))
     ()
     ((:family :messages) (:delay 1) (:occupies robot-radio) (:arguments check-message)
      (:report () (destructuring-bind (to message) (operation-arguments operation)
                    (phrase "Robot sent ~/ars-magna.command:write-datum-safely/ to ~(~A~)"
                            message to))))
-    "Send MESSAGE by radio to another robot, or to all others. It arrives in the receivers' mailboxes
-RADIO-DELAY* ticks later, see NEXT-MESSAGE, unless they are out of RADIO-RANGE* or it is lost. The
-robot's body and parts continue. A newer ROBOT-SEND in the same tick interrupts an older one."
+    "Send MESSAGE by radio to another robot, or to all others. It arrives in the receivers'
+mailboxes RADIO-DELAY* ticks later, see NEXT-MESSAGE, unless they are out of RADIO-RANGE* or it is
+lost. The robot's body and parts continue. A newer ROBOT-SEND in the same tick interrupts an older
+one."
   (transmit operation robot to message)
   (succeed operation))
 

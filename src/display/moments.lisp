@@ -16,8 +16,8 @@
 (define-record (moment (:constructor make-moment (tick kind text &optional x y robot code)))
   "A notable event of a run. TEXT says what happened at TICK to the robot named ROBOT at X, Y."
   (tick 0 real "the tick of the event" :addition)
-  (kind :note symbol "the kind of the event: :GRASP, :RELEASE, :STOW; :FAILURE of a command; :MESSAGE
-that arrived; :PLAN
+  (kind :note symbol "the kind of the event: :GRASP, :RELEASE, :STOW; :FAILURE of a command;
+:MESSAGE that arrived; :PLAN
 that failed or was ended; :PART of a plan that failed or was ended, even if the plan continued;
 :ERROR in users' code; :NOTE of a user" :addition)
   (text "" string "a short description of the event" :addition)
@@ -131,11 +131,13 @@ of them are moments, or lists (tick text [robot]), up to the tick END."
   (unless (or (eq kinds t)
               (and (proper-list-p kinds) (subsetp kinds +moment-kinds+)))
     (reject-argument operator :kinds kinds
-                     (format nil "T for all except messages, or a list of some of ~{~(~S~)~^, ~}" +moment-kinds+))))
+                     (format nil "T for all except messages, or a list of some of ~
+                                  ~{~(~S~)~^, ~}"
+                             +moment-kinds+))))
 
 (defun moments-of-kinds (kinds moments)
-  "Return those of MOMENTS whose kind is :NOTE or in the list KINDS. If KINDS is T, return all except
-messages."
+  "Return those of MOMENTS whose kind is :NOTE or in the list KINDS. If KINDS is T, return all
+except messages."
   (if (eq kinds t)
       (remove :message moments :key #'moment-kind)
       (remove-if-not (lambda (moment) (member (moment-kind moment) (cons :note kinds))) moments)))

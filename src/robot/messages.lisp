@@ -6,10 +6,10 @@
           seed-of-next-message last-arrivals))
 
 ;;; Messages are state of the run, and journals and saved runs contain them. So they are plain data,
-;;; which no code modifies: senders give copies, and receivers get copies. A message on its way is an
-;;; event of the agenda without a resource. As a robot sends one message at a time, and robots act in
-;;; the order of their turns, messages that arrive in one tick arrive in the order of the ticks and
-;;; turns in which they were sent.
+;;; which no code modifies: senders give copies, and receivers get copies. A message on its way is
+;;; an event of the agenda without a resource. A robot sends one message at a time, and robots act
+;;; in the order of their turns; so messages that arrive in one tick arrive in the order of the
+;;; ticks and turns in which they were sent.
 
 ;;; Messages.
 
@@ -95,13 +95,13 @@ vectors of these, of limited size."
 
 (defun warn-of-full-mailbox (robot)
   (warn-once (list :mailbox (robot-name robot)) (robot-world robot)
-             (format nil "The mailbox of ~A is full, so the oldest message is dropped. Take messages ~
-                          with NEXT-MESSAGE, or raise mailbox-size*, which is ~D."
+             (format nil "The mailbox of ~A is full, so the oldest message is dropped. Take ~
+                          messages with NEXT-MESSAGE, or raise mailbox-size*, which is ~D."
                      robot mailbox-size*)))
 
 (defun put-message (robot message sender tick)
-  "Put MESSAGE, which SENDER sent in TICK, into the mailbox of ROBOT. If the mailbox is full, drop the
-oldest messages, count them, and warn once."
+  "Put MESSAGE, which SENDER sent in TICK, into the mailbox of ROBOT. If the mailbox is full, drop
+the oldest messages, count them, and warn once."
   (let* ((radio (robot-radio robot))
          (entry (list message sender tick))
          (before (radio-mailbox radio))

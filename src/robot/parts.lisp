@@ -6,8 +6,8 @@
           inner-resource-p inner-resource-robot inner-resources radio-p
           *part-vectors* parts-of-kind part mark-world-unsettled ensure-timeline))
 
-;;; A blueprint does not change after DEFROBOT has registered it. Any number of robots can be made from
-;;; it, each in its own world.
+;;; A blueprint does not change after DEFROBOT has registered it. Any number of robots can be made
+;;; from it, each in its own world.
 
 (define-record blueprint
   "The definition of a robot by DEFROBOT, from which robots are made."
@@ -48,7 +48,7 @@
    (sent 0 (unsigned-byte 60) "how many messages the robot has sent" :export)
    (mailbox '() list "the messages that have arrived and were not taken, the oldest first: lists
 (message sender tick)" :shared :export)
-   (dropped 0 (unsigned-byte 60) "how many messages were dropped because the mailbox was full" :export))
+   (dropped 0 (unsigned-byte 60) "how many messages the full mailbox has dropped" :export))
   (:memory
    (last-arrivals '() list "the last tick in which messages arrived, followed by these messages, the
 newest first" :shared :export)))
