@@ -298,7 +298,7 @@ function that COMMAND names for this."
 (defun issue (command resource arguments continuation)
   "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked. Copy lists and vectors in
 ARGUMENTS. CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick.
-Signals MISUSE if the robot's run is over, or if an argument belongs to another run or another robot."
+Signals MISUSE if the run is over, or if an argument belongs to another run or another robot."
   (check-not-retired resource (command-name command))
   (check-same-run command resource arguments)
   (check-own-arguments command resource arguments)
