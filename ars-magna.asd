@@ -47,7 +47,8 @@
    (:module "src/robot" :serial t
     :components ((:file "package") (:file "parts") (:file "bodies") (:file "odometer")
                  (:file "sight") (:file "designator") (:file "motion") (:file "tracks")
-                 (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes") (:file "rays")
+                 (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes")
+                 (:file "messages") (:file "rays")
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "tending")
                  (:file "soundness")))
    (:module "src/command" :serial t
@@ -56,7 +57,7 @@
                  (:file "driving") (:file "hands") (:file "inserting") (:file "giving")
                  (:file "patterns")
                  (:file "manipulations") (:file "manipulating") (:file "looking")
-                 (:file "withdrawing") (:file "approaching") (:file "thinking")
+                 (:file "withdrawing") (:file "approaching") (:file "thinking") (:file "sending")
                  (:file "soundness")))
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "run")
@@ -83,11 +84,12 @@
     :components ((:file "package") (:file "realm") (:file "home") (:file "fluent")
                  (:file "network") (:file "propagation") (:file "operators")))
    (:module "rpl/tasks" :serial t
-    :components ((:file "package") (:file "queues") (:file "failure") (:file "task")
-                 (:file "trace") (:file "runner") (:file "charging") (:file "tracing")
-                 (:file "machine") (:file "ending") (:file "stepping") (:file "calls")
-                 (:file "procedure") (:file "report") (:file "care") (:file "engine")
-                 (:file "blocking") (:file "variables") (:file "stillness")))
+    :components ((:file "package") (:file "queues") (:file "failure") (:file "agents")
+                 (:file "task") (:file "extras") (:file "trace") (:file "runner") (:file "ready")
+                 (:file "charging") (:file "tracing") (:file "machine") (:file "ending")
+                 (:file "stepping") (:file "calls") (:file "procedure") (:file "report")
+                 (:file "care") (:file "reacting") (:file "engine") (:file "blocking")
+                 (:file "variables") (:file "stillness")))
    (:module "rpl/language" :serial t
     :components ((:file "package") (:file "source") (:file "scope") (:file "suspension")
                  (:file "checking") (:file "mistakes") (:file "known-fluents") (:file "compiler")
@@ -105,10 +107,11 @@
    (:module "rpl" :serial t
     :components ((:file "rpl")))
    (:module "rpl/robot" :serial t
-    :components ((:file "package") (:file "fluents") (:file "interface") (:file "under-way")
-                 (:file "clashes") (:file "reacting") (:file "forking") (:file "thread")
-                 (:file "starting") (:file "outcomes") (:file "commands") (:file "runs")
-                 (:file "warnings") (:file "seeing")))
+    :components ((:file "package") (:file "fluents") (:file "interface") (:file "drivers")
+                 (:file "under-way") (:file "clashes") (:file "reacting") (:file "forking")
+                 (:file "thread") (:file "starting") (:file "outcomes") (:file "commands")
+                 (:file "messages") (:file "runs") (:file "warnings") (:file "on-robot")
+                 (:file "seeing")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors")
                  (:file "ars"))))
@@ -227,7 +230,7 @@
       :components ((:file "own-lines") (:file "robots-lines") (:file "running-lines")
                    (:file "status-lines")
                    (:file "map-lines") (:file "world-lines") (:file "plan-lines")
-                   (:file "acting-lines") (:file "topics") (:file "help")
+                   (:file "acting-lines") (:file "message-lines") (:file "topics") (:file "help")
                    (:file "picture-lines") (:file "film-lines") (:file "plot-lines")
                    (:file "other-runs")))
      (:module "shell" :serial t
@@ -326,7 +329,7 @@
                  (:file "rpl-telling") (:file "rpl-kills") (:file "rpl-hostile")
                  (:file "rpl-views") (:file "rpl-named-policies") (:file "rpl-goals")
                  (:file "rpl-at-location") (:file "rpl-replacing") (:file "rpl-examples")
-                 (:file "rpl-robot-answers")
+                 (:file "rpl-robot-answers") (:file "rpl-agents")
                  (:file "seeing-robots") (:file "giving") (:file "rpl-robot") (:file "rpl-issue")
                  (:file "rpl-rushing") (:file "rpl-clashes") (:file "rpl-left")
                  (:file "rpl-robot-live") (:file "rpl-robot-published") (:file "rpl-gone")
@@ -360,7 +363,8 @@
                  (:file "skipping")
                  (:file "kinds") (:file "digests") (:file "same-bits") (:file "runs")
                  (:file "runs-replaced") (:file "rewinding")
-                 (:file "several-robots") (:file "several-joining") (:file "several-rewinding")
+                 (:file "several-robots") (:file "several-plans") (:file "several-joining")
+                 (:file "several-rewinding") (:file "messages") (:file "messages-kept")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")

@@ -29,7 +29,8 @@ ends the Lisp process. See the manual, 3.7, A and E.")
   (:import-from :ars-magna.rpl-robot #:rpl-runner
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use #:*commanded-robot-hook* #:note-robot-commanded)
-  (:import-from :ars-magna.rpl-robot #:*trace-plans* #:all-fluent-variables)
+  (:import-from :ars-magna.rpl-robot #:*trace-plans* #:all-fluent-variables
+                #:fluent-of-robot #:robot-name-of-plan)
   (:import-from :ars-magna.rpl.fluents
                 #:fluent-p #:known-pulse-p #:vector-variable-kind #:known-fluent-variable-p
                 #:peek-fluent #:peek-pulses)

@@ -67,6 +67,8 @@
       (:place-type (make-pick '(doorway convex concave)))
       (:receiving-part (make-pick '(:hand :bin)))
       (:part-number (make-pick '(0 1)))
+      (:recipient :all)
+      (:message (make-pick '(:go "word" (1 (2 "word")))))
       ((:number :speed :distance) (make-pick '(0 1 .3 .8 2 5)))
       (:angle (make-pick '(0 1 -2 .1 3.2d0 1/2)))
       ((:ticks :tick-span) (make-pick '(0 1 2 5 20))))))

@@ -110,7 +110,7 @@
 (test rpl-init-robot.is-asked-for-before-the-plan
   (is-true (complains-p '(run:with-simulation ((crane barrow))
                           (driver:run-plan (rpl:interp-lambda () (driver:rpl-init-robot crane))))
-                        "before the plan, not in the plan: (rpl-init-robot crane)")))
+                        "(rpl-init-robot crane) before the plan" ":robot ROBOT")))
 
 (test commands-of-plans.outside-of-plans-name-those-of-programs
   (is-true (complains-p '(run:with-simulation (rover)

@@ -153,7 +153,8 @@
   (in-window (window robot)
     (let ((rows (window::parameter-rows (open-panel window 1180 820))))
       (is (= (length (definitions:all-parameters)) (count-if-not #'stringp rows)))
-      (is (equal '("Robot movement" "Cameras" "Sensor error" "Hands" "Storage bins" "Time")
+      (is (equal '("Robot movement" "Cameras" "Sensor error" "Hands" "Storage bins" "Radio"
+                   "Time")
                  (remove-if-not #'stringp rows))))))
 
 (test parameters.a-step-is-a-line

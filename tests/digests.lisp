@@ -186,7 +186,7 @@
   (with-rover (:seed 3)
     (driver:rpl-init-robot rover)
     (run:set-seed 77)
-    (let ((dice (tasks::runner-dice (driver:rpl-runner))))
+    (let ((dice (rpl:agent-dice (rpl:runner-agent (driver:rpl-runner)))))
       (is (= (base:dice-state dice) (base:dice-state (base:make-dice 77 :plans))))
       (is (= 77 (run:simulation-seed time:*simulation*))))))
 

@@ -93,6 +93,8 @@ what went wrong after it."
     (:designator-type :non-local)
     (:receiving-part :hand)
     (:part-number 0)
+    (:recipient :all)
+    (:message 1)
     (:specification '((:color world:red)))
     (:place-type 'world::corner)
     ((:designator :destination) (robot:robot-storage-bin counter 0))))

@@ -164,13 +164,12 @@
 
 ;;; Tasks.
 
-(test project.takes-no-task-of-plans-that-another-robot-has-ended
+(test project.takes-tasks-of-the-plans-of-every-robot
   (with-simulation ((runner second-runner))
     (rpl-init-robot runner)
     (let ((task (begin-plan 'toss 1 9)))
       (rpl-init-robot second-runner)
-      (refused ("a task of the plans that drive the current robot")
-        (project task :trials 1)))))
+      (is (= 3 (length (projection-rollouts (project task :trials 3))))))))
 
 (test project.says-that-worlds-believed-in-know-no-tasks
   (on-true-court

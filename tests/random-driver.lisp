@@ -160,10 +160,10 @@ another command, and sometimes fails."
     (:specification (any-specification))
     (:place-type (pick '(doorway convex concave beak "concave" nonsense)))
     (:receiving-part (pick '(:hand :bin)))
-    (:part-number (pick '(0 1 7)))
+    ((:recipient :message) (pick '(:all keeper "helper" nobody (1 (2 at)) #(a #\b))))
     ((:number :speed :distance) (pick '(0 1 .3 .8 -1 5)))
     (:angle (pick '(0 1 -2 .1 3.2d0 1/2)))
-    ((:ticks :tick-span) (pick '(0 1 2 5 20)))))
+    ((:ticks :tick-span :part-number) (pick '(0 1 2 5 20)))))
 
 (defun senseless-argument ()
   (pick (list nil t 7 "seven" 'seven :seven -1d6 1d30 (expt 10 400)
@@ -184,7 +184,7 @@ another command, and sometimes fails."
 (defun issue-command (name &rest arguments)
   "Issue the command NAME with ARGUMENTS, which may be wrong, and a continuation of the rider's."
   (multiple-value-bind (continuation call) (rider name)
-    (if (tolerating (base:wrong-argument base:misuse)
+    (if (tolerating (base:wrong-argument base:misuse base:unknown-name)
           (apply name (append arguments (list continuation))))
         (incf (ride-issued *ride*))
         (remhash call (ride-pending *ride*)))))

@@ -104,8 +104,9 @@
     (rpl:react-to-all runner))
   (rpl:react-to-all runner))
 
-(defun run-and-kill (plan dice)
-  "Run PLAN, harm it and kill it at random. Return what is left of it, NIL if nothing is."
+(defun run-and-kill (plan dice &optional (agents 1))
+  "Run PLAN, with each of AGENTS agents of a runner, harm it and kill it at random. Return what is
+left of it, NIL if nothing is."
   (let* ((fluents (list (fluent nil 'f) (fluent nil 'g) (fluent nil 'h)))
          (valves (list (rpl:make-valve 'v) (rpl:make-valve 'w)))
          (base:*message-queue* (base:make-message-queue))
@@ -114,7 +115,8 @@
          (runner (rpl:make-plan-runner :on-end #'identity))
          (end (base:roll-index 15 dice))
          (close (base:chance .2 dice)))
-    (apply #'rpl:start-plan runner plan (append fluents valves))
+    (dolist (agent (if (= 1 agents) (list runner) (add-agents agents runner)))
+      (apply #'rpl:start-plan agent plan (append fluents valves)))
     (loop for tick from 0 to end
           do (let-time-pass runner tick)
              (harm runner fluents dice))
@@ -129,10 +131,15 @@
                       (find-if #'fluents::fluent-first-link fluents)
                       (find-if #'rpl:valve-owner valves)
                       (find-if #'constructs::valve-requests valves)
-                      (plusp (tasks::runner-blocks runner))
+                      (plusp (rpl:runner-blocks runner))
                       (and (not (rpl:runner-idle-p runner)) :ready)))))
 
-(defun trouble-with-kills (plans kills seed)
+(defun add-agents (count runner)
+  "Return a list of COUNT new agents of RUNNER, whose clients are the numbers from 0."
+  (loop for client below count
+        collect (rpl:add-agent runner (rpl:make-agent :client client))))
+
+(defun trouble-with-kills (plans kills seed &optional (agents 1))
   "Return a list of (form seed left) for what was left of random PLANS, each killed KILLS times."
   (let ((dice (base:make-dice seed "kills")) (troubles '()))
     (dotimes (i plans troubles)
@@ -140,7 +147,7 @@
              (plan (plan-with-parameters form)))
         (dotimes (kill kills)
           (let* ((seed (base:roll-index 1000000 dice))
-                 (left (run-and-kill plan (base:make-dice seed "one kill"))))
+                 (left (run-and-kill plan (base:make-dice seed "one kill") agents)))
             (when left (push (list form seed left) troubles))))))))
 
 (test kills.whatever-is-killed-ends-and-leaves-nothing

@@ -82,9 +82,9 @@ after that."
       (is (null (rpl:next-wake-time runner))))))
 
 (test closing.from-inside-of-a-plan
-  "A plan that has another robot driven ends itself; the new interface is in use."
+  "A plan that calls RPL-INIT-ROBOT for its robot ends itself; the robot has new fluents."
   (with-fitter (:clean t)
-    (let* ((runner (driver:rpl-runner))
+    (let* ((fluent driver:robot-stopped*)
            (task (driver:begin-plan (rpl:interp-lambda ()
                                       (rpl:wait-time 1)
                                       (driver:rpl-init-robot fitter)
@@ -92,22 +92,22 @@ after that."
                                       :not-reached))))
       (run:run-ticks 3)
       (is (eq :evaporated (rpl:task-state task)))
-      (is (not (eq runner (driver:rpl-runner))))
+      (is (not (eq fluent driver:robot-stopped*)))
       (is (eq :fine (run-as-plan (turned .1) :fine))))))
 
-(test closing.an-old-plan-does-not-drive-the-new-robot
+(test closing.cleanups-of-an-old-plan-set-only-its-own-fluents
   (with-fitter (:clean t)
-    (let ((trouble nil))
-      (driver:begin-plan (rpl:interp-lambda ()
-                           (rpl:wait-time 1)
-                           (rpl:seq (driver:rpl-init-robot fitter)
-                                    (rpl:wait-time 0))))
-      (let ((old driver::*default-interface*))
-        (run:run-ticks 2)
-        (let ((driver::*reacting-interface* old))
-          (handler-case (driver:rpl-robot-turn 1)
-            (base:misuse (condition) (setf trouble condition)))))
-      (is-true trouble))))
+    (let ((task (driver:begin-plan (rpl:interp-lambda ()
+                                     (rpl:evap-protect (rpl:wait-time 9)
+                                       (driver:rpl-robot-turn .3)))))
+          (old driver:robot-angle-diff*))
+      (run:run-ticks 2)
+      (driver:rpl-init-robot fitter)
+      (is (eq :evaporated (rpl:task-state task)))
+      (run:run-ticks 3)
+      (is (plusp (robot:robot-angle fitter)))
+      (is (not (eq old driver:robot-angle-diff*)))
+      (is (null (rpl:fluent-value driver:robot-angle-diff*))))))
 
 (test rpl-init-robot.only-of-this-world
   (run:with-simulation (rover)

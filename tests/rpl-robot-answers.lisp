@@ -187,6 +187,8 @@
     (command:hand-give :not-grasping (driver:rpl-hand-give 0 designator :hand 0) (seen 'red)
      (null (rpl:fluent-value (svref driver:hand-grasping* 0))))
 
+    (command:robot-send nil (driver:rpl-robot-send :all 1))
+
     (command:storage-bin-close nil (driver:rpl-storage-bin-close 0) nil
      (driver:rpl-storage-bin-closed? 0))
     (command:storage-bin-close :robot-in-bin (driver:rpl-storage-bin-close 0) (hand-in-bin)
@@ -207,6 +209,7 @@
            ((command:robot-set-speed command:robot-set-turn-angle)
             (list 'driver:robot-movement-error* nil))
            (command:robot-place (list nil 'driver:robot-place-input*))
+           (command:robot-send (list 'driver:robot-radio-error* 'driver:robot-sent*))
            (t (list 'driver:robot-movement-error* 'driver:robot-stopped*))))
         (robot:camera
          (case name

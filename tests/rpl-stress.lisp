@@ -266,7 +266,7 @@ last one run with its start."
                   (remove nil (mapcar #'rpl:valve-owner valves))
                   (mapcan #'rpl:valve-losers valves)
                   (mapcan #'rpl:valve-requests valves)
-                  (tasks::runner-held runner)
+                  (some #'tasks::agent-held (rpl:runner-agents runner))
                   (plusp (rpl:runner-blocks runner))))))
 
 (test stress.stopped-plans-leave-nothing-behind-and-repeat-exactly

@@ -69,7 +69,7 @@
                     (mapcan #'rpl:valve-losers valves)
                     (mapcan #'rpl:valve-requests valves)
                     (rpl:plan-runner-tasks runner)
-                    (tasks::runner-held runner)
+                    (some #'tasks::agent-held (rpl:runner-agents runner))
                     (and (plusp (rpl:runner-blocks runner)) '(:blocks))))))
 
 (test stress.who-has-lost-a-valve-does-not-run

@@ -149,7 +149,9 @@ ended has failed, tell where and why it failed."
   (let ((plan (loop for task = (if (task-p which) which (first (plans))) then (task-parent task)
                     unless (task-parent task) return task)))
     (text-in-plan-package (task-name plan)
-                          (lambda () (with-output-to-string (out) (print-tasks which out t))))))
+                          (lambda ()
+                            (with-output-to-string (out)
+                              (if (task-p which) (print-tasks which out t) (print-plans out t)))))))
 
 (define-line "PLAN-TREE" (session (n count "the number of a task" :optional)) (:planning)
     "Show all details of the running plans, or of the task N and its parts: each task's stack and

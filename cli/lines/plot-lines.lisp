@@ -45,9 +45,17 @@
 
 ;;; Fluents. A run has its own fluents, so the variable is read for each sample.
 
-(defun fluent-in-variable (variable index)
-  "Return the fluent in VARIABLE or, if its value is a vector, in the element INDEX; or NIL."
-  (let* ((value (symbol-value variable))
+(defun value-of-variable (variable robot)
+  "Return the value of VARIABLE, or what it stands for in plans of ROBOT if it is one of the robot's
+fluents; NIL if no plan has driven ROBOT."
+  (if (assoc variable (all-fluent-variables))
+      (fluent-of-robot variable robot)
+      (symbol-value variable)))
+
+(defun fluent-in-variable (variable index robot)
+  "Return the fluent in VARIABLE or, if its value is a vector, in the element INDEX; or NIL. ROBOT
+is as for VALUE-OF-VARIABLE."
+  (let* ((value (value-of-variable variable robot))
          (fluent (if (and index (simple-vector-p value) (< index (length value)))
                      (svref value index)
                      value)))
@@ -60,15 +68,15 @@ If the fluent is only pulsed, the quantity is the number of pulses."
     (make-quantity (format nil "~(~A~)~@[ ~D~]" variable index) ""
                    (stateless-maker
                     (lambda (robot tick)
-                      (declare (ignore robot tick))
-                      (let ((fluent (fluent-in-variable variable index)))
+                      (declare (ignore tick))
+                      (let ((fluent (fluent-in-variable variable index robot)))
                         (and fluent (if pulsed-p (peek-pulses fluent) (peek-fluent fluent))))))
                    t)))
 
 (defun fluents-count (variable kind)
   "Return the number of fluents in VARIABLE, one for each part of KIND. Return NIL if KIND is NIL."
   (and kind
-       (let ((value (symbol-value variable)))
+       (let ((value (value-of-variable variable (session-robot))))
          (if (simple-vector-p value)
              (length value)
              (length (parts-of-kind (session-robot) (make-keyword (string-upcase kind))))))))
@@ -84,10 +92,9 @@ If the fluent is only pulsed, the quantity is the number of pulses."
                           variable kind (1- count))))))
 
 (defun fluent-variable-p (symbol)
-  (and (boundp symbol)
-       (or (fluent-p (symbol-value symbol))
-           (known-fluent-variable-p symbol)
-           (vector-variable-kind symbol))))
+  (or (known-fluent-variable-p symbol)
+      (vector-variable-kind symbol)
+      (and (boundp symbol) (fluent-p (symbol-value symbol)))))
 
 ;;; Functions of the user's.
 

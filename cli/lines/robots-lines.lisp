@@ -47,6 +47,7 @@ the others."
       ;; The line may have ended the run, or the session.
       (unless (or (session-over-p session) (not (member name (current-robot-names))))
         (let ((*prompt-robot* name))
+          (note-robot-commanded)
           (write-under-robot name
                              (lambda ()
                                (let ((trouble (error-of-line session text)))

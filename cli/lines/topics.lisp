@@ -130,7 +130,7 @@
   (cond ((member symbol (all-constructs) :test #'string=) "construct")
         ((macro-function symbol) "macro")
         ((fboundp symbol) "function")
-        ((boundp symbol) "variable")
+        ((or (boundp symbol) (eq :symbol-macro (variable-kind symbol))) "variable")
         (t "type")))
 
 (defun lisp-name-description (symbol)

@@ -48,6 +48,10 @@ typed by number. Signal BAD-LINE for an invalid DATUM. Without a method for TYPE
   (declare (ignore robot))
   (keyword-of-symbol datum))
 
+(defmethod read-argument ((type (eql :recipient)) datum robot)
+  (declare (ignore robot))
+  (if (and (symbolp datum) (string= "ALL" datum)) :all datum))
+
 (defun typed-by-number-p (type)
   (or (member type '(:designator :destination))
       (part-type-p type)))
@@ -205,6 +209,8 @@ included. Return NIL if the choices are not known. May signal BAD-LINE, as witho
 (define-argument-choices :destination (designator-numbers))
 (define-argument-choices :designator-type '(local non-local))
 (define-argument-choices :receiving-part '(hand bin))
+(define-argument-choices :recipient
+  (cons "all" (names-as-typed (remove (robot-name (session-robot)) (current-robot-names)))))
 (define-argument-choices :odometer-part '(:pos :ang))
 (define-argument-choices :place-type (mapcar #'place-type-name (all-place-types)))
 (define-argument-choices :rate '(free))

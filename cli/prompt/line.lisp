@@ -126,6 +126,7 @@ SENTENCE is the command's help; DETAILS, strings, are paragraphs below the param
       (:robot (case (command-family command)
                 (:moving :moving)
                 (:thinking :planning)
+                (:messages :seeing)
                 (t :manipulating)))
       (t type))))
 

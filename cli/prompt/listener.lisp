@@ -140,7 +140,7 @@ between, after which a hint says how to hide them.")
 
 (defun has-program-continuation-p (message)
   "True if MESSAGE reports the end of a command, and a program's continuation got that report."
-  (and (message-robot message)
+  (and (message-about message)
        (message-told-p message)
        (not (line-asker-p (message-asker message)))))
 

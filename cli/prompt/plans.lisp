@@ -82,7 +82,8 @@ waits for in vain, and what could be done."
 (defmacro with-messages-for-job ((job) &body body)
   "Run BODY. Messages of BODY belong to the simulation of JOB and to the line that started JOB."
   `(let ((*message-queue* (simulation-messages (plan-job-simulation ,job)))
-         (*request-origin* (plan-job-asker ,job)))
+         (*request-origin* (plan-job-asker ,job))
+         (*reported-robot* (and (plan-job-task ,job) (robot-name-of-plan (plan-job-task ,job)))))
      ,@body))
 
 (defun waiting-for-plan-p (session)

@@ -16,8 +16,9 @@
   (task nil :type task :read-only t))
 
 (defun stay-registry ()
-  (or (runner-note *runner* 'stay-registry)
-      (setf (runner-note *runner* 'stay-registry) (make-stay-registry))))
+  (let ((agent (calling-agent)))
+    (or (agent-note agent 'stay-registry)
+        (setf (agent-note agent 'stay-registry) (make-stay-registry)))))
 
 (defun begin-stay (whereabouts)
   "Record that the calling task is busy where the robot is now. Return the record."

@@ -100,7 +100,7 @@ If all attempts fail, fail with a COMPOSITE-FAILURE."
   (:steps
    (begin
     (setf memory (make-attempt-progress
-                  (funcall order attempts environment (runner-dice (task-runner task)))))
+                  (funcall order attempts environment (agent-dice (task-agent task)))))
     (at-once between-attempts))
    (trying (values (frame-up frame) value))
    (between-attempts

@@ -18,12 +18,12 @@
 
 (defun think-for (task ticks alone)
   "Make TASK think for TICKS. If ALONE is true, no other task runs meanwhile."
-  (when alone (stop-runner-tasks (task-runner task) ticks))
-  (park task (start-timer task ticks))
+  (when alone (stop-agent (task-agent task) ticks))
+  (park-for task ticks)
   +parked+)
 
 (defun takes-time-p (task ticks)
-  (and (runner-charged-p (task-runner task)) (plusp ticks)))
+  (and (agent-charged-p (task-agent task)) (plusp ticks)))
 
 (define-construct think (span &key unit alone)
   "Think in a plan for SPAN ticks, or seconds if UNIT is :seconds. If thinking is charged, wait for
@@ -45,7 +45,7 @@ NIL. Signals WRONG-ARGUMENT (manual 1.2)."
    (thinking (values (frame-up frame) nil)))
   (:unwind
    ;; Others may go on.
-   (when (and memory (in-state-p thinking)) (resume-runner-tasks (task-runner task)))
+   (when (and memory (in-state-p thinking)) (resume-agent (task-agent task)))
    nil))
 
 ;;; A body with a price. Its steps are not charged for, and its end comes when the price is paid.
@@ -64,14 +64,14 @@ other tasks stop meanwhile. The body of the WITH-CHARGE has ended with RESULT or
 
 (defun ticks-left (thought task)
   (let ((now (runner-tick (task-runner task))))
-    (if (runner-charged-p (task-runner task))
+    (if (agent-charged-p (task-agent task))
         (max 0 (- (+ (thought-start thought) (thought-ticks thought)) now))
         0)))
 
 (defun start-uncharged-branch (body task environment)
   "Start BODY as a part of TASK whose steps are not charged. Return +PARKED+."
   (let ((branch (start-branch body task environment 0 (task-level task))))
-    (when (runner-charged-p (task-runner task)) (setf (task-uncounted-p branch) t)))
+    (when (agent-charged-p (task-agent task)) (setf (task-uncounted-p branch) t)))
   (await-parts task))
 
 (defun end-thought (thought task frame)
@@ -107,7 +107,7 @@ just run BODY. A task that evaporates does not wait for the rest of SPAN. Signal
    (thinking (end-thought memory task frame)))
   (:unwind
    (cond ((in-state-p thinking)
-          (when (thought-alone memory) (resume-runner-tasks (task-runner task)))
+          (when (thought-alone memory) (resume-agent (task-agent task)))
           nil)
          ((and (in-state-p inside) (not (eq signal :evaporate)) (plusp (ticks-left memory task)))
           (next thinking)

@@ -6,16 +6,18 @@
 
 (defun wake-at-timeout (timer)
   (let ((task (timer-client timer)))
-    (setf (task-timer task) nil)
-    (stop-waiting task)
-    (wake task nil timer)))
+    ;; An interrupt may have left the timer of a wait that is over.
+    (when (or (eq timer (task-awaiting task)) (eq timer (task-timer task)))
+      (stop-waiting task)
+      (wake task nil timer))))
 
 (defun make-timer-after (ticks task function)
   (let ((runner (task-runner task)))
     (set-timer (runner-timers runner) (+ (runner-tick runner) ticks) function task)))
 
-(defun start-timer (task ticks)
-  (setf (task-timer task) (make-timer-after ticks task #'wake-at-timeout)))
+(defun park-for (task ticks)
+  "Note that TASK waits for TICKS. The current step of TASK must then return +PARKED+."
+  (park task (make-timer-after ticks task #'wake-at-timeout)))
 
 (defun span-in-ticks (span unit operator)
   "Return SPAN, a number or fluent, in ticks. UNIT is :ticks or :seconds. Errors name OPERATOR."
@@ -52,7 +54,7 @@ number up to 1e15. If SPAN is 0 or less, do not wait."
     (next waiting)
     (let ((span (funcall span environment)))
       (cond ((plusp span)
-             (park task (start-timer task span))
+             (park-for task span)
              +parked+)
             (t (values (frame-up frame) nil)))))
    (waiting (values (frame-up frame) nil))))
@@ -110,7 +112,8 @@ ticks have passed (manual C). TIMEOUT is a number up to 1e15."
              (values (frame-up frame) value))
             ((and timeout (<= (the real timeout) 0)) (values (frame-up frame) nil))
             (t (next waiting)
-               (when timeout (start-timer task timeout))
+               (when timeout
+                 (setf (task-timer task) (make-timer-after timeout task #'wake-at-timeout)))
                (wait-until-true task fluent)
                +parked+))))
    (waiting (values (frame-up frame) value))))

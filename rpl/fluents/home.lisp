@@ -104,24 +104,53 @@ values of FUNCTION. Otherwise return NIL. An interrupt may come at any point."
      (declare (dynamic-extent #'body))
      (call-with-owned-home ,home #'body)))
 
-;;; Posting.
+;;; Posting. Entries may be meant for an agent of the home; see rpl/tasks/agents.lisp. Who applies
+;;; entries decides whether those for an agent are due.
 
-(defun post-entry (home entry)
-  "Append ENTRY, a list of settings or a function, to the entries posted to HOME."
-  (let ((wrapper (home-wrapper home)))
-    (atomic-push (if wrapper (funcall wrapper entry) entry) (home-inbox home)))
+(defstruct (entry-for-agent (:constructor make-entry-for-agent (agent entry)) (:copier nil))
+  "ENTRY, which is applied only while the tasks of AGENT may run."
+  (agent nil :read-only t)
+  (entry nil :type (or list function) :read-only t))
+
+(defun post-entry (home entry &optional agent)
+  "Append ENTRY, a list of settings or a function, to the entries posted to HOME. If AGENT is given,
+an agent of HOME, apply ENTRY only while the tasks of AGENT may run."
+  (let* ((wrapper (home-wrapper home))
+         (entry (if wrapper (funcall wrapper entry) entry)))
+    (atomic-push (if agent (make-entry-for-agent agent entry) entry) (home-inbox home)))
   (funcall (home-on-post home))
   (values))
 
-(defun take-posted-entry (home)
-  "Remove the oldest entry posted to HOME. Return the entry and true, or NIL and false if none."
-  (unless (home-outbox home)
-    (loop for entries = (home-inbox home)
-          until (swap-if-eq (home-inbox home) entries '())
-          finally (setf (home-outbox home) (reverse entries))))
-  (if (home-outbox home)
-      (values (pop (home-outbox home)) t)
-      (values nil nil)))
+(defun collect-posts (home)
+  "Move the entries in the inbox of HOME to the end of its outbox."
+  (loop for entries = (home-inbox home)
+        until (swap-if-eq (home-inbox home) entries '())
+        finally (setf (home-outbox home) (append (home-outbox home) (reverse entries)))))
+
+(defun take-due-entry (home due-p)
+  "Remove the first entry in the outbox of HOME that is due: see TAKE-POSTED-ENTRY."
+  (declare (type function due-p))
+  (loop for tail on (home-outbox home)
+        for before = nil then last
+        for last = tail
+        for entry = (first tail)
+        for agent = (and (entry-for-agent-p entry) (entry-for-agent-agent entry))
+        when (funcall due-p agent)
+          do (if before
+                 (setf (rest before) (rest tail))
+                 (setf (home-outbox home) (rest tail)))
+             (return (values (if agent (entry-for-agent-entry entry) entry) t agent))
+        finally (return (values nil nil nil))))
+
+(defun take-posted-entry (home &optional (due-p (constantly t)))
+  "Remove the oldest entry posted to HOME that is due: DUE-P, a function, returns true for its agent
+or NIL. Return the entry, true and the agent; or NIL and false if there is none."
+  (multiple-value-bind (entry there agent) (take-due-entry home due-p)
+    (cond (there (values entry t agent))
+          ((home-inbox home)
+           (collect-posts home)
+           (take-due-entry home due-p))
+          (t (values nil nil nil)))))
 
 (defun posted-p (home)
   "True if some entry posted to HOME has not been applied yet."

@@ -131,12 +131,12 @@ itself. Signals MISUSE for a vector of fluents."
 
 (defun names-fluent-p (object)
   "True if OBJECT is a symbol whose value is, or will be, a fluent or a vector of fluents."
-  (and (symbolp object)
-       (boundp object)
-       (let ((value (symbol-value object)))
-         (or (fluent-p value)
-             (fluents-vector-p value)
-             (and (null value) object (gethash object *known-fluent-variables*) t)))))
+  (and object
+       (symbolp object)
+       (or (and (gethash object *known-fluent-variables*) t)
+           (and (boundp object)
+                (let ((value (symbol-value object)))
+                  (or (fluent-p value) (fluents-vector-p value)))))))
 
 (defun reject-name-of-fluent (name)
   "Return NAME, but signal MISUSE if the symbol's value is a fluent: then the quote is a mistake."

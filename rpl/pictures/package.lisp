@@ -6,7 +6,7 @@
         :ars-magna.canvas)
   (:import-from :ars-magna.rpl
                 #:bar #:bar-call-p #:bar-commands #:bar-depth #:bar-end #:bar-failure #:bar-form
-                #:bar-label #:bar-name #:whole-form-text
+                #:bar-label #:bar-name #:bar-owner #:whole-form-text
                 #:bar-outcome #:bar-parts #:bar-serial #:bar-spans #:bar-start #:bars
                 #:span-end #:span-error #:span-kind #:span-start #:span-text
                 #:plan-trace #:plan-runner-tick #:runner-to-show

@@ -14,14 +14,18 @@
 (defun row-label (row &optional (indent 2) (most 24))
   "Return the text for tasks in ROW, indented by INDENT spaces per parent, by MOST spaces at most."
   (let ((more (1- (length (row-bars row)))))
-    (format nil "~V@T~A~@[ (and ~D more)~]" (min most (* indent (bar-depth (first (row-bars row)))))
+    (format nil "~V@T~@[~A: ~]~A~@[ (and ~D more)~]"
+            (min most (* indent (bar-depth (first (row-bars row)))))
+            (bar-owner (first (row-bars row)))
             (bar-label (first (row-bars row)))
             (and (plusp more) more))))
 
 (defun bar-fits-p (bar row)
   "True if BAR has the expression of the bars in ROW and starts when the last of them has ended."
   (let ((last (first (last (row-bars row)))))
-    (and (eq (bar-form bar) (bar-form last)) (<= (bar-end last) (bar-start bar)))))
+    (and (eq (bar-form bar) (bar-form last))
+         (equal (bar-owner bar) (bar-owner last))
+         (<= (bar-end last) (bar-start bar)))))
 
 (defun arrange-in-rows (bars)
   "Return the rows for BARS, which are sorted by start, without the rows for their parts."
@@ -141,9 +145,15 @@ entries (look text x y), and the height of all lines."
   (start 0 real "the tick with which a page begins" :export)
   (end 0 real "the tick with which a page ends" :export))
 
+(defun sorted-by-owner (bars)
+  "Return BARS, the bars of plans, so that those of a robot are together, in the order of starts."
+  (loop for owner in (remove-duplicates (mapcar #'bar-owner bars) :test #'equal :from-end t)
+        append (remove owner bars :key #'bar-owner :test-not #'equal)))
+
 (defun make-timeline-page (bars most)
-  "Return a page with the rows for BARS, the bars of top-level tasks, but at most MOST rows."
-  (let* ((all (rows-of-bars bars)) (unseen (max 0 (- (length all) most))))
+  "Return a page with the rows for BARS, the bars of top-level tasks, but at most MOST rows. The
+plans of a robot are together."
+  (let* ((all (rows-of-bars (sorted-by-owner bars))) (unseen (max 0 (- (length all) most))))
     (%make-page (subseq all 0 (- (length all) unseen)) unseen
                 (reduce #'min bars :key #'bar-start) (reduce #'max bars :key #'last-tick-of-bar))))
 

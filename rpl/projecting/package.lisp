@@ -21,7 +21,7 @@ believes in, to estimate how they may end, and to choose the best.")
                 #:fluent-value #:whole-form-text #:frame #:frame-up #:lisp-failure
                 #:lisp-failure-condition #:park
                 #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
-                #:runner-client #:runner-dice #:stop-trace #:task #:task-label #:task-p
+                #:runner-client #:agent-dice #:task-agent #:stop-trace #:task #:task-label #:task-p
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
                 #:*default-interface* #:*realm* #:fork-realm)
   (:import-from :ars-magna.trails #:update-trails #:trails-to-ways #:save-picture-of-ways)

@@ -14,11 +14,13 @@ list of a plan and its arguments. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
                    (first call)
                    (typep (first call) '(or procedure symbol string)))
         (reject 'plan plan "the name of a plan, a list (name argument...), a plan, or a task"))
-      (check-arguments (if (procedure-p (first call)) (first call) (find-procedure (first call)))
-                       (rest call))
       call)))
 
-(defun make-question (task interface plan arguments options)
+(defun check-plan-arguments (plan arguments)
+  "Signal WRONG-ARGUMENT unless PLAN takes the list ARGUMENTS."
+  (check-arguments (if (procedure-p plan) plan (find-procedure plan)) arguments))
+
+(defun make-question (task interface plan arguments options &optional robot)
   "Return a question about how PLAN may end. TASK asks it, or is NIL outside of plans. PLAN is a
 task of INTERFACE, a plan for the list ARGUMENTS, or a list of a plan and its arguments. Signals
 UNKNOWN-NAME and WRONG-ARGUMENT."
@@ -30,8 +32,13 @@ UNKNOWN-NAME and WRONG-ARGUMENT."
                         :subject (check-projected-task plan interface (getf options :world))
                         :options options)
         (destructuring-bind (plan . arguments) (plan-with-arguments plan arguments)
-          (%make-question :operator 'project :task task :interface interface
-                          :plan plan :arguments arguments :options options)))))
+          (multiple-value-bind (arguments last-robot) (split-arguments plan arguments)
+            (check-plan-arguments plan arguments)
+            (setf robot (or robot last-robot))
+            (%make-question :operator 'project :task task :interface interface
+                            :robot robot
+                            :driver (and interface (null task) (driver-for-plan robot))
+                            :plan plan :arguments arguments :options options))))))
 
 (defun check-projected-task (task interface world)
   "Return TASK. Signals WRONG-ARGUMENT unless TASK belongs to the plans of INTERFACE. Also signals
@@ -67,7 +74,7 @@ WRONG-ARGUMENT if there is a WORLD, because tasks do not exist in believed world
     (when (question-option question :world) (check-no-run-objects question))
     question))
 
-(define-construct project (plan &key arguments trials horizon seed cost world print)
+(define-construct project (plan &key arguments trials horizon seed cost world print robot)
   "Return a projection of PLAN: how it ends in TRIALS rollouts, by default 20. A rollout is a fork
 of the run with its own seed. In the fork, PLAN runs until it has ended or HORIZON ticks have
 passed, by default 600. See PROJECTION-PROBABILITY and others.
@@ -82,22 +89,29 @@ believes in. WORLD is called with a function and a seed, and must call that func
 (with-simulation (robot :seed seed) ...). Rollouts then use the robots, fluents and parameters of
 that world. Objects of the true run in global variables can be read, but not changed or commanded.
 PLAN must have a name, and ARGUMENTS must contain no objects of a run.
-  PRINT, if true, shows what plans write in rollouts. In a plan, PROJECT waits until all plans rest,
-and goes on in the same tick; PLAN begins as if PROJECT called it. Elsewhere, as in a continuation,
-in a test or at the prompt, PLAN begins as by BEGIN-PLAN. The run itself is not affected: its dice
-are not rolled, and messages and traces of rollouts are dropped. In rollouts, PROJECT returns a
+  PRINT, if true, shows what plans write in rollouts.
+  ROBOT, a robot or its name, is what PLAN drives, by default as for BEGIN-PLAN. In a plan, write
+(on-robot (robot) (project ...)) instead.
+  In a plan, PROJECT waits until all plans rest, and goes on in the same tick; PLAN begins as if
+PROJECT called it. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins as by
+BEGIN-PLAN. The run itself is not affected: its dice are not rolled, and messages and traces of
+rollouts are dropped. In rollouts, PROJECT returns a
 projection without rollouts. An error in a rollout is a failure of that rollout; errors in COST or
 WORLD are reported by one message. Fails with CANNOT-FORK if the run cannot be forked. (After
 McDermott's projection of reactive plans, 1992.)"
-  (:arguments plan arguments trials horizon seed cost world print)
+  (:arguments plan arguments trials horizon seed cost world print robot)
   (:parts (request function
                    (progn
                      (check-plan-quote plan form scope)
+                     (when robot
+                       (reject-clause (text-title) form
+                                      "no :robot in a plan: (on-robot (robot) (project ...))"))
                      (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
                                           :seed ,seed :cost ,cost :world ,world :print ,print)
                                    scope))))
   (:in-lisp `(project-plan ,plan :arguments ,arguments :trials ,trials :horizon ,horizon
-                                 :seed ,seed :cost ,cost :world ,world :print ,print))
+                                 :seed ,seed :cost ,cost :world ,world :print ,print
+                                 :robot ,robot))
   (:steps
    (begin
     (next answered)
@@ -124,12 +138,13 @@ McDermott's projection of reactive plans, 1992.)"
 
 ;;; From outside.
 
-(defun interface-to-project (plan)
-  "Return the interface whose plans are projected with PLAN. Signals MISUSE inside a plan's step."
+(defun interface-to-project (plan robot)
+  "Return the interface whose plans are projected with PLAN, for ROBOT or, if ROBOT is NIL, for the
+robot that plans drive by default. Signals MISUSE inside a plan's step."
   (let ((interface (if (and (task-p plan) (task-runner plan)
                             (interface-p (runner-client (task-runner plan))))
                        (runner-client (task-runner plan))
-                       (ensure-interface))))
+                       (driver-interface (driver-for-plan robot)))))
     (when (holding-plans-p interface)
       (reject-use "project: a plan is running here. Write PROJECT in the text of the plan itself, ~
                    outside of any lambda."))
@@ -144,13 +159,14 @@ McDermott's projection of reactive plans, 1992.)"
       (call-with-plans (lambda () (forget-wish question)) interface))))
 
 (addition project-plan)
-(defun project-plan (plan &key arguments trials horizon seed cost world print)
+(defun project-plan (plan &key arguments trials horizon seed cost world print robot)
   "Return a projection of PLAN. This is PROJECT for Lisp code outside of plans. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
-  (let* ((interface (if world nil (interface-to-project plan)))
+  (let* ((interface (if world nil (interface-to-project plan robot)))
          (question (make-question nil interface plan arguments
                                   (list :trials trials :horizon horizon :seed seed :cost cost
-                                        :world world :print print))))
+                                        :world world :print print)
+                                  robot)))
     (when world (check-no-run-objects question))
     (cond (*rolling-out* (projection-without-rollouts question))
           (t (first (project-branches question (if world nil (fork-with-question question))))))))

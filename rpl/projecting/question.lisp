@@ -11,6 +11,9 @@ how PLAN, called with ARGUMENTS, may end; or how the task SUBJECT may end. OPERA
 rollout, ENDED and RESULT say how the branch or plan on trial has ended."
   (token (gensym "QUESTION") :type symbol :read-only t)
   (operator nil :type symbol :read-only t)
+  ;; Of a question that is asked outside of plans.
+  (driver nil :read-only t)
+  (robot nil :read-only t)
   (branches '() :type list :read-only t)
   (plan nil :read-only t)
   (arguments '() :type list :read-only t)
@@ -111,7 +114,7 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
   "Charge steps in rollouts of PROJECTIONS to the plans that ask QUESTION, if steps have a budget."
   (count-steps (loop for projection in projections
                      sum (reduce #'+ (projection-rollouts projection) :key #'rollout-steps))
-               (interface-runner (wish-interface question))
+               (task-agent (wish-task question))
                (wish-task question)))
 
 (defun project-branch (question moment branch)
@@ -147,7 +150,7 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
   (grant-wish question
               (if (question-branches question)
                   (roll-index (length (question-branches question))
-                              (runner-dice (interface-runner (wish-interface question))))
+                              (agent-dice (task-agent (wish-task question))))
                   (projection-without-rollouts question))))
 
 (defun answer-by-rollouts (question)

@@ -130,11 +130,12 @@ change only runs that it makes. Changes to existing fluents have no effect outsi
   (unless *simulation*
     (reject-use "project: the function :world must call its argument, a function, inside of ~
                  (with-simulation ...)."))
-  (let ((question (rollout-start-question scene)) (interface (ensure-interface)))
-    (run-rollout scene trial seed question interface
+  (let* ((question (rollout-start-question scene))
+         (driver (driver-for-plan (question-robot question))))
+    (run-rollout scene trial seed question (driver-interface driver)
                  (lambda ()
-                   (begin-plan-in-interface
-                    interface (question-plan question) (question-arguments question)
+                   (begin-plan-with-driver
+                    driver (question-plan question) (question-arguments question)
                     #'identity)))))
 
 (defun make-failed-rollout (scene trial seed condition)
@@ -201,8 +202,9 @@ the end of the rollout, or NIL if NOTE-QUESTION-END records the end."
                      interface)
     (cond ((question-subject question))
           ((null task)
-           (begin-plan-in-interface
-            interface (question-plan question) (question-arguments question) #'identity))
+           (begin-plan-with-driver
+            (question-driver question) (question-plan question) (question-arguments question)
+            #'identity))
           ((and (question-branches question) (not (eq :branch (question-option question :until))))
            (task-top task)))))
 
@@ -218,7 +220,7 @@ the end of the rollout, or NIL if NOTE-QUESTION-END records the end."
           fork
           (lambda ()
             (let* ((original (rollout-start-question scene))
-                   (interface (interface-of-robot (interface-robot (wish-interface original)) fork))
+                   (interface (interface-of-simulation fork))
                    (question (find (question-token original)
                                    (remove-if-not #'question-p (interface-wishes interface))
                                    :key #'question-token)))

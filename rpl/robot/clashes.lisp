@@ -14,13 +14,13 @@
   "After this many ticks, a second warning names plans that still take a part from each other.
 Messages of takeovers may have pushed the first warning out of the queue.")
 
-(defun takeover-entry (interface resource)
-  (let ((tick (simulation-tick (interface-simulation interface))))
-    (unless (eql tick (interface-takeover-tick interface))
-      (setf (interface-takeover-tick interface) tick
-            (interface-takeovers interface) '()))
-    (or (assoc resource (interface-takeovers interface))
-        (first (push (cons resource 0) (interface-takeovers interface))))))
+(defun takeover-entry (driver resource)
+  (let ((tick (simulation-tick (driver-simulation driver))))
+    (unless (eql tick (driver-takeover-tick driver))
+      (setf (driver-takeover-tick driver) tick
+            (driver-takeovers driver) '()))
+    (or (assoc resource (driver-takeovers driver))
+        (first (push (cons resource 0) (driver-takeovers driver))))))
 
 (defun taker-text (task)
   (if task
@@ -40,35 +40,42 @@ each other for ever. The text does not depend on their order."
                    interrupted, the task issues another"
               (taker-text older) (taker-text newer) resource)))
 
-(defun warn-of-takeovers (interface text)
+(defun warn-of-takeovers (driver text)
   "Queue the warning TEXT, unless it was queued within the last +TAKEOVER-WARNING-TICKS+ ticks."
-  (let ((tick (simulation-tick (interface-simulation interface)))
-        (said (assoc text (interface-warned interface) :test #'string=)))
+  (let ((tick (simulation-tick (driver-simulation driver)))
+        (said (assoc text (driver-warned driver) :test #'string=)))
     (unless (and said (< tick (+ (cdr said) +takeover-warning-ticks+)))
-      (setf (interface-warned interface)
-            (acons text tick (remove said (interface-warned interface))))
+      (setf (driver-warned driver)
+            (acons text tick (remove said (driver-warned driver))))
       (queue-notable-warning text ". The takeovers continue in each tick. Let one task at a time "
                              "own the robot's valve: see RPL-ROBOT-VALVE."))))
 
-(defun count-takeover (interface resource older newer)
+(defun count-takeover (driver resource older newer)
   "Count that the task NEWER has taken over RESOURCE from the task OLDER. NIL stands for code
 outside of plans. After too many takeovers, let time pass."
-  (let ((count (takeover-entry interface resource))
-        (runner (interface-runner interface))
+  (let ((count (takeover-entry driver resource))
+        (agent (and newer (task-agent newer)))
         (same-plan-p (and older newer (eq (task-top older) (task-top newer)))))
     ;; Commands of plans that take a part from each other are no endless commands of one plan.
-    (unless same-plan-p (setf (runner-note runner 'commands) nil))
+    (unless same-plan-p
+      (dolist (task (remove nil (list older newer)))
+        (setf (agent-note (task-agent task) 'commands) nil)))
     (when (< *most-takeovers* (incf (cdr count)))
-      (warn-of-takeovers interface (takeover-text resource older newer))
+      (warn-of-takeovers driver (takeover-text resource older newer))
       ;; One plan has not waited for the tick; see COMMAND-COUNT-ENTRY.
-      (when same-plan-p (setf (runner-note runner 'cut-short) (plan-runner-tick runner)))
-      (exhaust-reaction runner))))
+      (when same-plan-p
+        (setf (agent-note agent 'cut-short) (plan-runner-tick (task-runner newer))))
+      (exhaust-reaction agent))))
+
+(defun taken-over-too-often-p (driver)
+  "True if plans have taken over a part of the robot of DRIVER too often in this tick."
+  (and (eql (simulation-tick (driver-simulation driver)) (driver-takeover-tick driver))
+       (loop for (nil . count) in (driver-takeovers driver)
+               thereis (< *most-takeovers* count))))
 
 (defun must-wait-for-tick-p (interface)
   "True if plans have taken over a part too often in this tick and must wait for the next tick."
-  (and (eql (simulation-tick (interface-simulation interface)) (interface-takeover-tick interface))
-       (loop for (nil . count) in (interface-takeovers interface)
-               thereis (< *most-takeovers* count))))
+  (some #'taken-over-too-often-p (interface-drivers interface)))
 
 ;;;; Commands without end
 
@@ -76,12 +83,13 @@ outside of plans. After too many takeovers, let time pass."
   "How many commands a plan may issue to its robot before time passes. A plan that issues more fails
 with class :TOO-MANY-COMMANDS. Commands of cleanups do not count.")
 
-(defun command-count-entry (runner task)
-  "Return a cons of TASK, a top-level task of RUNNER, and the number of commands that TASK has
-issued in this tick. If takeovers cut short an earlier tick, its commands count, too."
-  (let ((tick (plan-runner-tick runner)) (note (runner-note runner 'commands)))
-    (unless (and note (member (first note) (list tick (runner-note runner 'cut-short))))
-      (setf note (setf (runner-note runner 'commands) (list tick))))
+(defun command-count-entry (task)
+  "Return a cons of TASK, a top-level task, and the number of commands that TASK has issued in this
+tick. If takeovers cut short an earlier tick, its commands count, too."
+  (let* ((agent (task-agent task)) (tick (plan-runner-tick (task-runner task)))
+         (note (agent-note agent 'commands)))
+    (unless (and note (member (first note) (list tick (agent-note agent 'cut-short))))
+      (setf note (setf (agent-note agent 'commands) (list tick))))
     (setf (first note) tick)
     (or (assoc task (rest note))
         (first (push (cons task 0) (rest note))))))
@@ -93,23 +101,26 @@ issued in this tick. If takeovers cut short an earlier tick, its commands count,
         (format nil "(vref ~A)" name)
         name)))
 
-(defun wait-for-action-text (outcome resource)
-  "Return the text of a form that waits for the end of a command on RESOURCE. The function OUTCOME
-returns the settings of fluents at that end. Return NIL if no fluent is pulsed."
-  (let ((pulse (assoc :pulse (funcall outcome resource :interrupt))))
+(defun wait-for-action-text (outcome driver resource)
+  "Return the text of a form that waits for the end of a command on RESOURCE, of the robot of
+DRIVER. The function OUTCOME returns the settings of fluents at that end. Return NIL if no fluent is
+pulsed."
+  (let ((pulse (assoc :pulse (outcome-settings outcome driver resource :interrupt))))
     (and pulse (format nil "(wait-for ~A)" (fluent-form-text (second pulse))))))
 
-(defun count-command (task command outcome resource)
-  "Count that TASK issues COMMAND on RESOURCE. Fail if the plan of TASK has issued more than
-*PLAN-COMMAND-LIMIT* commands in this tick. OUTCOME is as in WAIT-FOR-ACTION-TEXT."
-  (let ((count (command-count-entry (task-runner task) (task-top task))))
+(defun count-command (task driver command outcome resource)
+  "Count that TASK issues COMMAND on RESOURCE, of the robot of DRIVER. Fail if the plan of TASK has
+issued more than *PLAN-COMMAND-LIMIT* commands in this tick. OUTCOME is as in
+WAIT-FOR-ACTION-TEXT."
+  (let ((count (command-count-entry (task-top task))))
     (when (< *plan-command-limit* (incf (cdr count)))
       (fail :class :too-many-commands :limit *plan-command-limit*
             :remedy (format nil "A loop issues rpl-~(~A~) without waiting, and no time passes. Put ~
                                  a wait into it, such as ~:[~;~:*~A or ~](wait-time 1); or, if ~
                                  parts of a plan take the robot from one another, let each own it: ~
                                  (with-valve ((rpl-robot-valve)) ...)"
-                            (command-name command) (wait-for-action-text outcome resource))))))
+                            (command-name command)
+                            (wait-for-action-text outcome driver resource))))))
 
 ;;; The newer command counts (manual 3.1.2), and that is often what a plan is for: a policy, or what
 ;;; waits for an event, takes the robot on purpose. But branches of a PAR are all to succeed, and
@@ -159,17 +170,17 @@ around TASK or NIL, do not count."
       (command-instant-p (action-command action))
       (trait-p :stops (action-command action))))
 
-(defun warn-of-clash (interface older newer)
-  "Warn once if the action NEWER of INTERFACE has interrupted OLDER, an action of a parallel task."
+(defun warn-of-clash (driver older newer)
+  "Warn once if the action NEWER of DRIVER has interrupted OLDER, an action of a parallel task."
   (when (and newer
              (unexpected-interruption-p (action-task older) (action-task newer))
              (not (harmless-action-p newer))
              ;; A task that gives way to a higher priority expects it.
              (notany (lambda (loser) (part-of-p (action-task older) loser))
-                     (valve-losers (interface-valve interface))))
+                     (valve-losers (driver-valve driver))))
     (let ((interrupted (action-text older)) (by (action-text newer)))
       (warn-once-in-run
-       interface (list :clash interrupted by)
+       (driver-interface driver) (list :clash interrupted by)
        "~A was interrupted by ~A, which runs beside it: ~A carries out one command at a time. ~
         Issue the commands one after the other, or let each task own the robot's valve while it ~
         needs the robot: (with-valve ((rpl-robot-valve)) ...)."
@@ -202,15 +213,16 @@ Return NIL if that was probably intended, as in a reaction to an event."
                   (not (waits-on-purpose-p task))))
          ticks)))
 
-(defun warn-of-hasty-command (interface older newer)
-  "Warn once if action NEWER of INTERFACE has cut OLDER short before or just after OLDER began."
+(defun warn-of-hasty-command (driver older newer)
+  "Warn once if action NEWER of DRIVER has cut OLDER short before or just after OLDER began."
   (let ((ticks (and newer (ticks-before-replacement older newer))))
     (when ticks
       (warn-once-in-run
-       interface (list :hurry-in-plan (action-name older) (action-name newer))
+       (driver-interface driver) (list :hurry-in-plan (action-name older) (action-name newer))
        "rpl-~(~A~) of the plan ~A ~:[was cut off after a tick, because rpl-~(~A~) was issued~;does ~
         nothing: rpl-~(~A~) was issued before a tick had passed~], and ~A carries out one command ~
         at a time.~@[ Wait for the end of the first command before the second: ~A.~]"
        (action-name older) (task-label (task-top (action-task older))) (= 0 ticks)
        (action-name newer) (action-resource older)
-       (wait-for-action-text (action-outcome older) (action-resource older))))))
+       (wait-for-action-text (action-outcome older) (action-driver older)
+                             (action-resource older))))))

@@ -4,8 +4,9 @@
 
 (export '(define-fluents all-fluent-variables))
 
-;;; Each variable holds a fluent or, for cameras, hands and bins, a vector of fluents, one for each
-;;; such part. RPL-INIT-ROBOT makes them; a headless simulation binds its own.
+;;; Each variable stands for a fluent or, for cameras, hands and bins, for a vector of fluents, one
+;;; for each such part. It is a symbol macro: which robot's fluent it means depends on the calling
+;;; plan. See drivers.lisp.
 
 (defvar *fluent-variables* '() "A list (variable kind name) of all fluent variables; the kind of
 part is a symbol, NIL for the robot itself.")
@@ -30,16 +31,19 @@ pulsed, and never set, its documentation begins with the word Pulsed. Return the
      (fluent-part-kind ',kind)
      ,@(loop for (name text mark) in definitions
              collect `(,(if mark 'addition 'public) ,name)
-             collect `(defvar ,name nil ,(format nil "~A~@[~A~]~:[~; (Manual C.)~]" text
-                                                 (unless (same-name-p kind 'robot)
-                                                   (format nil " A vector with a fluent for each ~
-                                                                ~(~A~)." kind))
-                                                 (and *loading-simulator-p* (not mark))))
+             collect `(define-symbol-macro ,name (plan-fluent ',name))
+             ;; So that the variable counts as bound.
+             collect `(set ',name nil)
+             collect `(setf (documentation ',name 'variable)
+                            ,(format nil "~A~@[~A~]~:[~; (Manual C.)~]" text
+                                     (unless (same-name-p kind 'robot)
+                                       (format nil " A vector with a fluent for each ~(~A~)."
+                                               kind))
+                                     (and *loading-simulator-p* (not mark))))
              collect `(note-fluent-variable ',name ',kind)
              collect `(declare-fluent-variable
                        ',name :kind ,(if (same-name-p kind 'robot) t (string-downcase kind))
-                              :pulsed-p ,(starts-with-subseq "Pulsed " text))
-             collect `(pushnew ',name *simulation-variables*))
+                              :pulsed-p ,(starts-with-subseq "Pulsed " text)))
      ',(mapcar #'first definitions)))
 
 (define-fluents robot
@@ -78,14 +82,17 @@ pulsed, and never set, its documentation begins with the word Pulsed. Return the
   "Return lists (variable kind) of all fluent variables, in order; the kind of the robot is NIL."
   (reverse (loop for (variable kind) in *fluent-variables* collect (list variable kind))))
 
+(defun make-fluent-for-variable (variable robot)
+  "Return a new fluent for VARIABLE of ROBOT, or a vector of one for each part (reading 183)."
+  (destructuring-bind (kind name) (rest (assoc variable *fluent-variables*))
+    (if kind
+        (create-fluent-vector name (count kind (robot-parts robot) :key #'type-of))
+        (create-fluent name))))
+
 (defun make-fluents (robot)
-  "Set fluent variables to new fluents for ROBOT, or to vectors of one for each part (reading 183)."
-  (let ((kinds (mapcar #'type-of (robot-parts robot))))
-    (loop for (variable kind name) in *fluent-variables*
-          do (setf (symbol-value variable)
-                   (if kind
-                       (create-fluent-vector name (count kind kinds))
-                       (create-fluent name))))))
+  "Return an alist from all fluent variables to new fluents for ROBOT, or vectors of fluents."
+  (loop for (variable) in *fluent-variables*
+        collect (cons variable (make-fluent-for-variable variable robot))))
 
 ;;; Arguments may be fluents; what counts is their value. Parts are given by index, or as such.
 
@@ -169,7 +176,7 @@ fluent, is its number. Signals WRONG-ARGUMENT; and MISUSE without a robot."
 (defun rpl-grab-robot ()
   "Stop the robot's own current command. Its fluents change at once: the error fluent becomes
 :INTERRUPT, and the end fluent is pulsed. The robot stands still from the next tick on (manual C)."
-  (grab (required-interface) (rpl-robot))
+  (grab (required-driver) (rpl-robot))
   (values))
 
 (macrolet ((define-grabs (&rest definitions)
@@ -180,7 +187,7 @@ fluent, is its number. Signals WRONG-ARGUMENT; and MISUSE without a robot."
                                    ,(format nil "Stop the current commands of ~A INDEX. Fluents ~
                                                  change at once, as in RPL-GRAB-ROBOT. Signals ~
                                                  WRONG-ARGUMENT. (Manual C.)" text)
-                                   (grab (required-interface) (find-part ',kind index ',name))
+                                   (grab (required-driver) (find-part ',kind index ',name))
                                    (values))))))
   (define-grabs
     (rpl-grab-camera camera "the camera")

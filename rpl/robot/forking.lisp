@@ -2,23 +2,19 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(interface-of-robot))
+(export '(interface-of-simulation))
 
 ;;; After a rewind a new run replaces the old one. It has the old tasks up to that tick, with the
 ;;; same numbers. Later tasks of the two runs differ, though they may have the same numbers. So an
 ;;; interface records the era of each task, a symbol. ERAS is a list (symbol . number), the newest
-;;; first; tasks with greater numbers belong to that era. A rewind begins an era; so does
-;;; RPL-INIT-ROBOT, after which numbers start again.
+;;; first; tasks with greater numbers belong to that era. A rewind begins an era.
 
 (defun era-of-task-number (number interface)
   (car (find number (interface-eras interface) :key #'cdr :test #'>)))
 
-(defun interface-of-robot (robot simulation)
-  "Return the interface in SIMULATION for the robot that has the same name as ROBOT, or NIL."
-  (find-if (lambda (participant)
-             (and (interface-p participant)
-                  (eq (robot-name robot) (robot-name (interface-robot participant)))))
-           (simulation-participants simulation)))
+(defun interface-of-simulation (simulation)
+  "Return the interface of SIMULATION, or NIL if no plans have driven a robot of SIMULATION."
+  (find-if #'interface-p (simulation-participants simulation)))
 
 (defun same-era-p (task interface)
   "True if the counterpart of TASK, a task of another run, has the same number in INTERFACE."
@@ -28,7 +24,7 @@
 
 (defmethod counterpart-in-current-run ((task task))
   (let* ((client (and (task-runner task) (runner-client (task-runner task))))
-         (interface (and client (interface-of-robot (interface-robot client) *simulation*))))
+         (interface (and client *simulation* (interface-of-simulation *simulation*))))
     (and interface
          (same-era-p task interface)
          (task-numbered (task-serial task) (interface-runner interface)))))
@@ -36,16 +32,15 @@
 (defun counterpart-of-task (task simulation)
   "SIMULATION is a fork of the run of TASK, or replaces that run in a rewind. Return the counterpart
 of TASK there; TASK itself if the counterpart is over. Signals MISUSE if the run was rewound to
-before the start of TASK, or if RPL-INIT-ROBOT was called since."
+before the start of TASK."
   (let* ((client (runner-client (task-runner task)))
-         (interface (interface-of-robot (interface-robot client) simulation)))
+         (interface (interface-of-simulation simulation)))
     (cond ((and interface (same-era-p task interface))
            (or (task-numbered (task-serial task) (interface-runner interface)) task))
           ((eq (interface-simulation client) (latest-successor (interface-simulation client))) task)
           (t (reject-use "The task ~D, ~A, belongs to a run that was rewound, and is not in the ~
-                          run that goes on: it began after the tick to which the run was rewound, ~
-                          or RPL-INIT-ROBOT was called since. (plans) lists the plans ~
-                          under way."
+                          run that goes on: it began after the tick to which the run was rewound. ~
+                          (plans) lists the plans under way."
                          (task-serial task) (task-label task))))))
 
 ;;; Where a run is rewound.
@@ -55,17 +50,17 @@ before the start of TASK, or if RPL-INIT-ROBOT was called since."
   (append (remove-if (lambda (era) (>= (cdr era) number)) (butlast eras))
           (last eras)))
 
-(defun same-init-call-p (interface other)
-  "True if one call of RPL-INIT-ROBOT has made INTERFACE and OTHER, interfaces of two runs."
+(defun same-origin-p (interface other)
+  "True if INTERFACE and OTHER, interfaces of two runs, are copies of the same interface."
   (eq (car (first (last (interface-eras interface))))
       (car (first (last (interface-eras other))))))
 
 (defun begin-era (old new)
   "Begin an era in the run NEW, which replaces OLD: later tasks of NEW differ from tasks of OLD."
   (dolist (interface (remove-if-not #'interface-p (simulation-participants new)))
-    (let ((before (interface-of-robot (interface-robot interface) old))
+    (let ((before (interface-of-simulation old))
           (number (runner-serial (interface-runner interface))))
-      (when (and before (same-init-call-p interface before))
+      (when (and before (same-origin-p interface before))
         (setf (interface-eras interface) (interface-eras before)))
       (setf (interface-eras interface)
             (cons (cons (gensym "ERA") number)
@@ -86,43 +81,50 @@ before the start of TASK, or if RPL-INIT-ROBOT was called since."
   "Record an action in the run of INTERFACE. FUNCTION, called with ARGUMENTS, repeats the action."
   (apply #'record-outside-act (interface-simulation interface) function arguments))
 
-(defun repeat-call (word arguments serial)
+(defun repeat-call (word arguments serial &optional robot)
   "Repeat a call made outside of plans: call the function WORD with ARGUMENTS and one more argument,
-the task with the number SERIAL. If SERIAL is NIL, the last argument is the runner of plans."
+the task with the number SERIAL or, if there is a ROBOT, the agent of its plans. Otherwise the last
+argument is the runner of plans."
   (let* ((interface (usable-interface))
          (runner (and interface (interface-runner interface)))
-         (subject (if (and runner serial) (task-numbered serial runner) runner)))
+         (driver (and interface robot (find-driver robot interface)))
+         (subject (cond ((and runner serial) (task-numbered serial runner))
+                        (robot (and driver (driver-agent driver)))
+                        (t runner))))
     (when subject (apply word (append arguments (list subject))))))
 
-(defmethod note-outside-call ((interface interface) word arguments subject)
-  (when (interface-valid-p interface)
-    (record-plan-action interface #'repeat-call word arguments
-                        (and (task-p subject) (task-serial subject)))))
+(defmethod note-outside-call ((driver driver) word arguments subject)
+  (when (interface-valid-p (driver-interface driver))
+    (record-plan-action (driver-interface driver) #'repeat-call word arguments
+                        (and (task-p subject) (task-serial subject))
+                        (if (task-p subject) nil (driver-robot driver)))))
 
-(defun fluent-variable-and-index (fluent)
-  "Return a list (variable index) for FLUENT; the index is NIL unless the variable holds a vector.
-Return FLUENT itself if no variable holds FLUENT."
-  (loop for (variable) in *fluent-variables*
-        for value = (symbol-value variable)
-        for index = (and (vectorp value) (position fluent value :test #'eq))
-        when (or (eq fluent value) index)
-          return (list variable index)
-        finally (return fluent)))
+(defun place-of-fluent (fluent interface)
+  "Return a list (robot variable index) for FLUENT, a fluent of a robot in INTERFACE; the index is
+NIL unless the variable stands for a vector. Return FLUENT itself if it belongs to no robot."
+  (let ((driver (and interface (driver-of-fluent fluent interface))))
+    (loop for (variable . value) in (and driver (driver-fluents driver))
+          for index = (and (vectorp value) (position fluent value :test #'eq))
+          when (or (eq fluent value) index)
+            return (list (driver-robot driver) variable index)
+          finally (return fluent))))
 
-(defun repeat-fluent-change (function name value)
-  "Call FUNCTION with this run's fluent NAME (see FLUENT-VARIABLE-AND-INDEX) and VALUE."
+(defun repeat-fluent-change (function place value robot)
+  "Call FUNCTION with this run's fluent at PLACE (see PLACE-OF-FLUENT; there ROBOT was a separate
+argument) and VALUE."
   (funcall function
-           (if (consp name)
-               (destructuring-bind (variable index) name
-                 (if index (aref (symbol-value variable) index) (symbol-value variable)))
-               (twin-here name))
+           (if robot
+               (destructuring-bind (variable index) place (robot-fluent robot variable index))
+               (twin-here place))
            value))
 
 (defun record-fluent-change (function fluent value)
   "Record for rewinds that FUNCTION has been called with FLUENT and VALUE from outside of plans."
   (when (and *simulation* (simulation-past *simulation*))
-    (record-outside-act *simulation* #'repeat-fluent-change function
-                        (fluent-variable-and-index fluent) value)))
+    (let ((place (place-of-fluent fluent (interface-of-simulation *simulation*))))
+      (record-outside-act *simulation* #'repeat-fluent-change function
+                          (if (consp place) (rest place) place) value
+                          (and (consp place) (first place))))))
 
 (defmethod note-outside-change ((interface interface) function fluent value)
   (record-fluent-change function fluent value))
@@ -175,14 +177,17 @@ started a new run. Fluents keep their last values."
       (copy-slots interface fork)
       interface))
 
+(defmethod copy-plan-value ((driver driver) fork)
+  (if (client-in-copied-run-p (driver-interface driver) fork)
+      (copy-slots driver fork)
+      driver))
+
 (defmethod participant-copy ((interface interface) simulation copier)
   (declare (ignore simulation))
   (let ((twin (forked interface copier))
-        (robot (forked (interface-robot interface) copier))
         (realm (forked (source-realm copier) copier)))
-    (setf (interface-ender twin) (lambda () (close-interface twin)))
     (push (make-weak-reference (interface-runner interface)) (realm-sources realm))
-    (push (interface-ender twin) (robot-enders robot))
+    (mapc #'set-ender (interface-drivers twin))
     twin))
 
 ;; What this thread is in the middle of cannot continue in a fork.

@@ -1,8 +1,8 @@
-;;;; interface.lisp -- one robot, the runner of its plans, and access to them.
+;;;; interface.lisp -- a run, the runner of its plans, and access to them.
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(interface-p holding-plans-p call-with-plans))
+(export '(interface-p holding-plans-p call-with-plans usable-interface))
 
 ;;; The thread in which plans react holds the interface's lock. Headless that is the thread that
 ;;; passes ticks or starts plans; live it is their own thread, which exists while there are
@@ -19,57 +19,49 @@
   "When true, all events of tasks and fluents are kept in a trace, from RPL-INIT-ROBOT or the start
 of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SAVE-PLAN-TIMELINE.")
 
-(define-kind (interface :constructor (make-interface (robot simulation eras commanded)))
-    "The connection between a robot and the runner of the plans that drive it."
+(define-kind (plans-access :constructor (make-plans-access ()))
+    "What gives threads access to plans: a lock, and in a live run the thread of the plans."
+  (:link
+   (lock (make-lock "plans") t "the lock for access to the plans")
+   (holder nil t "the thread that holds the lock, or NIL")
+   (wanted 0 atomic-count "how many threads want the lock, or wait until all plans rest")
+   (thread nil t "the thread of the plans in a live run, or NIL")
+   (wake-up (make-semaphore "plans") t "the semaphore that wakes the plans' thread")
+   (calls nil (or null user-calls) "a record of users' code that the plans' thread calls")
+   (rests 0 atomic-count "how often all plans have come to rest in their thread")
+   (hog nil (or null task)
+        "the task found to run Lisp code that does not return, or NIL")))
+
+(define-kind (interface :include plans-access :constructor (make-interface (simulation eras)))
+    "The connection between a run and the runner of its plans."
   (:fixed
-   (robot nil (or null robot) "the robot that plans drive" :export)
-   (simulation nil t "the simulation that the robot is in" :export)
-   (commanded nil (or null robot (eql :none))
-              "the robot that a prompt commanded when the interface was made, or NIL; :NONE if the
-prompt was given another robot later")
-   (valve (make-valve "robot") valve "the valve of the robot, to be owned by a plan at a time"))
+   (simulation nil t "the simulation whose robots the plans drive" :export)
+   (realm *realm* t "the realm of the plans' fluents"))
   (:state
    (runner nil (or null plan-runner) "the plan runner that runs the plans" :export)
+   (drivers '() list
+            "the drivers of robots that plans drive, the newest first; replaced as a whole")
+   (default nil t "the driver of the last RPL-INIT-ROBOT, or NIL")
    (tick-wanted-p nil boolean "the plans are to go on with the next tick")
    (ends-requested '() t "the plans whose end was requested")
-   (actions '() list "the commands of plans that are under way, the oldest first")
-   (answers '() list "the answers to commands that are not applied yet, the oldest first")
-   (takeovers '() list "lists of a resource and how often plans have taken it in a tick")
-   (takeover-tick nil t "the tick that the counts in TAKEOVERS are for")
    (wishes '() list "the wishes of tasks, served while all plans rest, the oldest first" :export)
    (wishes-served 0 fixnum "how many wishes have been served in a tick")
    (wish-tick nil t "the tick that the count in WISHES-SERVED is for"))
   (:memory
    (eras '() list "the eras of tasks, the newest first; see forking.lisp")
-   (warned '() list "an alist from warnings of takeovers to ticks")
-   (outside nil symbol "the command in progress that no plan has issued, or NIL")
-   (last-command '() list "the plan, the function and the part of the last command")
-   (pulses '() list "lists (fluent's-name plan tick): the last pulses by commands")
-   (unread '() list "errors of commands that plans have not read; see RECORD-UNREAD-END")
    (next-tick nil (or null real (eql :ready))
               "published: the tick at which plans next go on; :READY if at once; or NIL"))
   (:link
    (origin '() list "the origin that messages name for the plans, made once")
-   (ender nil (or null function) "the function that the robot calls when its run ends")
    (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
    (told nil t "a cons of the last failure noted in the journal and the remark, or NIL")
    (closing-p nil boolean "the interface is to end")
    (closed-p nil boolean "the interface has ended")
-   (resting-p nil boolean "the thread that holds the plans keeps them at rest for a fork")
-   (lock (make-lock "plans") t "the lock for access to the plans")
-   (actions-lock (make-lock "commands of plans") t "the lock for access to actions and answers")
-   (holder nil t "the thread that holds the lock, or NIL")
-   (calls nil (or null user-calls) "a record of users' code that the plans' thread calls")
-   (wanted 0 atomic-count "how many threads want the lock, or wait until all plans rest")
-   (thread nil t "the thread of the plans in a live run, or NIL")
-   (wake-up (make-semaphore "plans") t "the semaphore that wakes the plans' thread")
-   (rests 0 atomic-count "how often all plans have come to rest in their thread")
-   (hog nil (or null task)
-        "the task found to run Lisp code that does not return, or NIL")))
+   (resting-p nil boolean "the thread that holds the plans keeps them at rest for a fork")))
 
 (defmethod print-object ((interface interface) stream)
   (print-unreadable-object (interface stream :type t)
-    (princ (interface-robot interface) stream)))
+    (princ (simulation-name (interface-simulation interface)) stream)))
 
 (defmacro atomic-remove (task place)
   "Remove TASK from the list in PLACE, which other threads may change meanwhile."
@@ -82,7 +74,7 @@ prompt was given another robot later")
 (pushnew '*realm* *simulation-variables*)
 
 (defvar *reacting-interface* nil
-  "The interface whose plans react in this thread. The plans drive its robot and no other.")
+  "The interface whose plans react in this thread, or NIL.")
 
 ;;; Access to the plans.
 
@@ -148,7 +140,8 @@ plan waits for time, or if a plan is ready. Any thread may call this function."
     (reject-use "The plans of ~A have stopped in a debugger, in the thread ~A. Choose in the ~
                  debugger how the plans go on; typed there, (print-plans t t) shows the plans with ~
                  their variables."
-                (interface-robot interface) (thread-name (interface-thread interface)))))
+                (simulation-name (interface-simulation interface))
+                (thread-name (interface-thread interface)))))
 
 (defun check-not-blocked (interface)
   (let ((task (blocking-task interface)))
@@ -213,15 +206,9 @@ you can meanwhile answer a plan that waits in a debugger."
 ;;; Which interface.
 
 (defun interface-valid-p (interface)
-  "True if the robot of INTERFACE is still in its world, and the simulation still has this world."
-  (let ((robot (interface-robot interface))
-        (simulation (interface-simulation interface)))
-    (and (not (interface-closed-p interface))
-         (null (simulation-over simulation))
-         (null (robot-retired robot))
-         (eq simulation (robot-simulation robot))
-         (member robot (simulation-robots simulation))
-         t)))
+  "True if the run of INTERFACE is not over."
+  (not (or (interface-closed-p interface)
+           (simulation-over (interface-simulation interface)))))
 
 (defun warn-once-in-run (interface key control &rest arguments)
   (warn-once key (simulation-world (interface-simulation interface))
@@ -231,43 +218,13 @@ you can meanwhile answer a plan that waits in a debugger."
   (and interface
        (interface-valid-p interface)
        (or (null *world*)
-           (eq *world* (robot-world (interface-robot interface))))))
+           (eq *world* (simulation-world (interface-simulation interface))))))
 
 (defun interface-in-use-here ()
   "Return the interface whose plans react in this thread, or else the interface in use; or NIL."
   (or *reacting-interface* *default-interface*))
 
 (defun usable-interface ()
+  "Return the interface of the run of this thread, or NIL if there is none."
   (let ((interface (interface-in-use-here)))
     (and (usable-interface-p interface) interface)))
-
-(defun required-interface ()
-  "Return the interface that can be used in this thread. If the robot of a plan that runs in this
-thread is gone, end that plan. Signals MISUSE if no interface can be used."
-  (or (usable-interface)
-      (and *reacting-interface* (not (interface-valid-p *reacting-interface*)) (leave-plan))
-      (let ((robots (and *simulation* (simulation-robots *simulation*)))
-            (alone-p (and *runner* (null (runner-client *runner*)))))
-        (reject-use "No robot to drive. ~:[Call (rpl-init-robot ROBOT) first; after a simulator ~
-                     has been started anew, or the robot defined anew, call it again. Outside of ~
-                     plans use commands without RPL-, such as (robot-turn ~(~A~) ~
-                     1).~;RUN-PLAN-ALONE runs plans without a robot. RUN-PLAN runs them on the ~
-                     robot of the run.~]"
-                    alone-p (if robots (robot-name (first robots)) 'robot)))))
-
-(addition rpl-robot)
-(defun rpl-robot ()
-  "Return the robot that plans drive. Signals MISUSE without a robot."
-  (interface-robot (required-interface)))
-
-(addition rpl-robot-valve)
-(defun rpl-robot-valve ()
-  "Return the valve of the robot that plans drive. If plans or branches of a plan may run side by
-side, each should own the valve while it drives: (with-valve ((rpl-robot-valve)) ...). The shipped
-plans do so. Nothing enforces the use of the valve. Signals MISUSE without a robot."
-  (interface-valve (required-interface)))
-
-(addition rpl-runner)
-(defun rpl-runner ()
-  "Return the plan runner of the robot that plans drive; see PLAN-TRACE, PRINT-TASKS."
-  (interface-runner (required-interface)))

@@ -9,7 +9,7 @@
 ;;; is defined by DEFINE-OUTCOME, in the table of commands.lisp.
 
 (defun fluent-for-part (variable part)
-  (let ((value (symbol-value variable)))
+  (let ((value (driver-fluent variable *answered-driver*)))
     (if (simple-vector-p value) (svref value (part-index part)) value)))
 
 (defun convert-argument (value type operator)
@@ -27,66 +27,70 @@ ROBOT, otherwise the first argument."
       (values (rpl-robot) arguments)
       (values (convert-argument (first arguments) type operator) (rest arguments))))
 
-(defun note-last-command (interface operator resource)
-  (let ((task (task-at-work interface)))
+(defun note-last-command (driver operator resource)
+  (let ((task (task-at-work driver)))
     (when task
-      (setf (interface-last-command interface)
+      (setf (driver-last-command driver)
             (list (task-serial (task-top task)) operator
                   (and (part-p resource) (part-index resource)))))))
 
-(defmethod last-command ((interface interface) task)
-  (destructuring-bind (&optional serial operator part) (interface-last-command interface)
+(defmethod last-command ((driver driver) task)
+  (destructuring-bind (&optional serial operator part)
+      (driver-last-command (driver-with-last-command driver task))
     (if (eql serial (task-serial (task-top task))) (values operator part) nil)))
 
-(defun issue-in-plan (interface operator command outcome arguments)
+(defun issue-in-plan (driver operator command outcome arguments)
   (let ((issue (note-command operator arguments)))
     (multiple-value-bind (resource arguments)
         (convert-resource arguments (spec-type (command-resource command)) operator)
       (let ((arguments (loop for spec in (command-parameters command)
                              for argument in arguments
                              collect (convert-argument argument (spec-type spec) operator))))
-        (check-command-arguments interface operator command arguments)
-        (note-last-command interface operator resource)
-        (issue-action interface command resource arguments outcome issue)))))
+        (check-command-arguments driver operator command arguments)
+        (note-last-command driver operator resource)
+        (issue-action driver command resource arguments outcome issue)))))
 
 (defun issue-plan-command (operator command outcome arguments)
   "Issue COMMAND as the plan function OPERATOR. OUTCOME, a function of the resource, the error code
 and the results, returns the settings of fluents at the end of COMMAND. Return nothing."
-  (let ((interface (required-interface)))
+  (let ((driver (required-driver)))
     ;; A call from outside of plans is recorded. Its results reach forks too.
-    (record-plan-action interface #'apply operator (mapcar #'fluent-value arguments))
+    (record-plan-action (driver-interface driver)
+                        #'call-for-robot (driver-robot driver) operator
+                        (mapcar #'fluent-value arguments))
     (let ((*continues-in-forks-p* t))
-      (issue-in-plan interface operator command outcome arguments)))
+      (issue-in-plan driver operator command outcome arguments)))
   (values))
 
-(defun searching-camera (interface)
-  "Return a camera that is searching for designators for plans of INTERFACE, or NIL."
+(defun searching-camera (driver)
+  "Return a camera of the robot of DRIVER that is searching for designators for plans, or NIL."
   (flet ((search-p (action)
            (and (action-open-p action)
                 (find-if (lambda (spec)
                            (member (spec-name spec) '(designator designators) :test #'same-name-p))
                          (command-results (action-command action))))))
-    (let ((action (find-if #'search-p (interface-actions interface))))
+    (let ((action (find-if #'search-p (driver-actions driver))))
       (and action (action-resource action)))))
 
-(defun expected-argument-text (interface type argument)
-  "Return text on what a plan of INTERFACE must give instead of ARGUMENT, which is not of TYPE."
+(defun expected-argument-text (driver type argument)
+  "Return text on what a plan must give instead of ARGUMENT, which is not of TYPE, to the robot of
+DRIVER."
   (let ((camera (and (null argument)
                      (same-name-p type 'designator)
-                     (searching-camera interface))))
+                     (searching-camera driver))))
     (if camera
         (format nil "a designator. The search for it is still under way. First wait for its ~
                      end: (wait-for (vref camera-input* ~D))"
                 (part-index camera))
         (argument-type-text type argument))))
 
-(defun check-command-arguments (interface operator command arguments)
+(defun check-command-arguments (driver operator command arguments)
   (loop for spec in (command-parameters command)
         for argument in arguments
         unless (argument-of-type-p argument (spec-type spec))
           do (error 'wrong-argument
                     :operator operator :name (spec-name spec) :value argument
-                    :expected (expected-argument-text interface (spec-type spec) argument))))
+                    :expected (expected-argument-text driver (spec-type spec) argument))))
 
 (defun plan-function-name (command-name)
   (symbolicate 'rpl- command-name))

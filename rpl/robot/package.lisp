@@ -3,7 +3,7 @@
 (ars-magna.host:define-package :ars-magna.rpl-robot
   (:documentation "The rpl- commands, accessors and fluents, and running plans on a simulation.")
   (:use :cl :ars-magna.host :ars-magna.basics :ars-magna.definitions :ars-magna.copying
-        :ars-magna.robot :ars-magna.command)
+        :ars-magna.robot :ars-magna.command :ars-magna.rpl.language)
   (:import-from :ars-magna.world
                 #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p
                 #:some-kicker-p #:kicker-test #:kicker-body
@@ -14,9 +14,10 @@
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
                 #:timeline-tick #:check-not-secluded #:check-not-over
                 #:wake-owner #:record-code-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*
+                #:agenda-salt                 #:sorted-by-turn
                 #:hog-seconds)
   (:import-from :ars-magna.run
-                #:simulation-tick #:add-observer #:remove-observer #:run-ticks
+                #:simulation-tick #:simulation-name #:add-observer #:remove-observer #:run-ticks
                 #:call-with-thread-bindings
                 #:resolve-robot #:simulation-over #:check-wait-while-paused
                 #:simulation-seed #:simulation-plans-dice-p #:simulation-agenda #:simulation-thread
@@ -47,7 +48,7 @@
                 #:next-wake-time #:outside-request-p #:runner-idle-p #:set-charges
                 #:make-plan-runner #:start-plan #:skip-idle-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:runner-steps #:plan-runner-tick
-                #:runner-note #:fail #:current-task #:task #:task-p
+                #:agent-note #:runner-agent #:fail #:current-task #:task #:task-p
                 #:task-over-p #:task-state #:task-result #:task-top #:task-parent #:task-path
                 #:task-label #:runner-serial #:task-serial #:task-form #:task-children
                 #:task-cleaning #:form-text
@@ -58,13 +59,17 @@
                 #:pulse-of-command #:last-command #:last-pulse-tick #:endless-advice
                 #:+no-fluent+ #:robot-fluent-p #:plan-backtrace #:operator-called-p
                 #:task-awaiting
-                #:report-end #:runner-lisps-dice #:reseed-runner #:digest-runner
+                #:report-end #:agent-lisps-dice #:reseed-agent #:digest-runner
                 #:print-tasks #:find-procedure
                 #:plan-trace #:valve #:make-valve #:valve-losers #:note-command
-                #:with-answer #:runner-in-use #:*step-plans* #:*plan-start-hooks*
+                #:with-answer #:runner-in-use #:task-agent #:task-client #:agent-client #:make-agent
+                #:add-agent #:remove-agent #:agents-in-order #:end-tasks-at-once
+                #:calling-task #:*calling-task* #:task-variable #:procedure-p
+                #:shape-keys #:lambda-list-shape #:procedure-lambda-list #:make-task-bindings
+                #:enter #:frame-up #:*step-plans* #:*plan-start-hooks*
                 #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-in-copied-run-p
-                #:call-with-client-still
+                #:call-with-client-still #:owner-text
                 #:note-plan-trouble #:note-plans-shown #:*realm*
                 #:copy-back-values #:+root+
                 #:realm-sources #:drop-realm-references #:source-realm #:with-owned-home #:entity
@@ -74,5 +79,5 @@
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:end-with-signal #:remove-waiting-task
                 #:task-frame
-                #:entity-realm #:twin-here
+                #:twin-here
                 #:note-outside-call #:current-counterpart #:advice-on-call #:advice-on-goal))

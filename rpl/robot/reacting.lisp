@@ -115,26 +115,36 @@ this tick. Return :IDLE, or :BUDGET if work is left for the next tick."
     (and (timeline-real-p (simulation-timeline simulation))
          (live-p simulation))))
 
-(defun set-thinking-charges (interface)
-  (let ((timeline (simulation-timeline (interface-simulation interface))))
-    (set-charges (interface-runner interface)
+(defun prepare-agent (driver)
+  "Give the agent of DRIVER a random state and a budget as its run says."
+  (let ((timeline (simulation-timeline (driver-simulation driver))))
+    (give-random-state driver)
+    (set-charges (driver-agent driver)
                  (thinking-charged-p timeline)
                  (thinking-budget timeline))))
 
-(defun plans-dice (interface)
-  "Return the random state that CL:RANDOM uses in plans of INTERFACE. If the run is or was live,
-plans have a separate random state, which forks copy. Otherwise return NIL: plans and other programs
-of the run share a random state."
-  (let ((simulation (interface-simulation interface)) (runner (interface-runner interface)))
-    (when (simulation-plans-dice-p simulation)
-      (or (runner-lisps-dice runner)
-          (setf (runner-lisps-dice runner)
-                (seeded-random-state (+ (simulation-seed simulation)
-                                        ;; How many robots come before it by full name.
-                                        (or (position (interface-robot interface)
-                                                      (robots-in-order
-                                                       (simulation-world simulation)))
-                                            0))))))))
+(defun seed-of-robot (driver)
+  "Return a number by which seeds of the plans of DRIVER differ from those of other robots."
+  (if (rest (simulation-robots (driver-simulation driver)))
+      (text-hash (robot-full-name (driver-robot driver)))
+      0))
+
+(defun give-random-state (driver)
+  "Give the agent of DRIVER a random state for CL:RANDOM in plans, if it needs one. If the run is or
+was live, or has several robots, the plans of each robot have a separate random state, which forks
+copy. Otherwise plans and other programs of the run share a random state."
+  (let ((simulation (driver-simulation driver)) (agent (driver-agent driver)))
+    (when (and (null (agent-lisps-dice agent))
+               (or (simulation-plans-dice-p simulation)
+                   (rest (simulation-robots simulation))))
+      (setf (agent-lisps-dice agent)
+            (seeded-random-state (+ (simulation-seed simulation) (seed-of-robot driver)))))))
+
+(defmethod agents-in-order ((interface interface) agents)
+  (let ((salt (agenda-salt (simulation-agenda (interface-simulation interface)))))
+    (if salt
+        (sorted-by-turn agents (lambda (agent) (driver-robot (agent-client agent))) salt)
+        agents)))
 
 (defun react-fully (interface)
   "Let the plans of INTERFACE react to time and to all that was posted, until all wait or have used
@@ -144,14 +154,15 @@ their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a re
       (let ((runner (interface-runner interface))
             (*reacting-interface* interface)
             ;; By then another run may be the current one.
-            (*realm* (entity-realm (interface-valve interface)))
+            (*realm* (interface-realm interface))
             (*continues-in-forks-p* t))
-        (set-thinking-charges interface)
+        ;; The parameters of thinking may have changed.
+        (mapc #'prepare-agent (interface-drivers interface))
         (advance-timers runner (simulation-tick (interface-simulation interface)))
-        (let ((outcome (with-random-state ((plans-dice interface)) (react-and-serve interface))))
+        (let ((outcome (react-and-serve interface)))
           ;; If it was closed while its plans reacted, the rest is done here.
           (cond ((interface-closing-p interface) (finish-closing interface) :idle)
-                (t outcome))))))
+                (t (finish-closing-drivers interface) outcome))))))
 
 (defun finish-closing (interface)
   "Finish the plans of INTERFACE, which no longer react, and mark INTERFACE as closed."
@@ -163,6 +174,11 @@ their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a re
 (defun tasks-of-interface (interface)
   (plan-runner-tasks (interface-runner interface)))
 
+(defun actions-of-interface (interface)
+  "Return a list of the commands of plans that are under way on all robots."
+  (loop for driver in (interface-drivers interface)
+        append (driver-actions driver)))
+
 (defun woken-by-tick-p (interface)
   (let ((tick (wake-tick interface)))
     (and tick (>= (simulation-tick (interface-simulation interface)) tick))))
@@ -172,7 +188,7 @@ their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a re
 (defun fluents-may-change-p (interface)
   "True if a command of a plan is in progress, or something else may still change fluents of plans."
   (let ((simulation (interface-simulation interface)))
-    (or (find nil (interface-actions interface) :key #'action-over-p)
+    (or (find nil (actions-of-interface interface) :key #'action-over-p)
         (wish-to-serve interface)
         (plusp (agenda-pending (simulation-agenda simulation)))
         (timeline-inbox (simulation-timeline simulation))
@@ -187,11 +203,12 @@ is NIL, was ended. KIND says whether TASK is a :PLAN or a :PART of a plan. Retur
           (format nil "~@[in ~A: ~]~:[task~;plan~] ~A ~:[was ended~;failed: ~:*~A~]"
                   (and (task-parent task) (task-label (task-top task)))
                   (eq :plan kind) (task-label task) (and failure (one-line-text failure)))
-          (interface-robot interface)))
+          (driver-robot (driver-of-plan task))))
 
-(defmethod note-plan-trouble ((interface interface) task failure)
-  (when (simulation-journal (interface-simulation interface))
-    (let ((remark (add-failure-remark interface :part task failure)))
+(defmethod note-plan-trouble ((driver driver) task failure)
+  (when (simulation-journal (driver-simulation driver))
+    (let* ((interface (driver-interface driver))
+           (remark (add-failure-remark interface :part task failure)))
       (when failure (setf (interface-told interface) (cons failure remark))))))
 
 (defun add-end-remark (interface task)
@@ -206,17 +223,17 @@ the remark on the same failure of a part in this tick."
 
 (defun handle-task-end (interface task)
   (atomic-remove task (interface-ends-requested interface))
-  (cond ((eq :succeeded (task-state task))
-         (warn-of-unawaited-action interface task)
-         (warn-of-unread-error interface task))
-        (t (interrupt-actions interface task)
-           (add-end-remark interface task)))
-  (report-end task (and (member task (interface-awaited interface) :test #'eq) t)))
+  (let ((*reported-robot* (robot-name-of-plan task)))
+    (cond ((eq :succeeded (task-state task))
+           (warn-of-unawaited-action interface task)
+           (dolist (driver (interface-drivers interface)) (warn-of-unread-error driver task)))
+          (t (interrupt-actions interface task)
+             (add-end-remark interface task)))
+    (report-end task (and (member task (interface-awaited interface) :test #'eq) t))))
 
 (defun make-runner (interface)
   (let ((simulation (interface-simulation interface)))
     (make-plan-runner :trace *trace-plans*
-                      :dice (make-dice (simulation-seed simulation) :plans)
                       :tick (simulation-tick simulation)
                       :client interface
                       :busy-p (lambda () (fluents-may-change-p interface))

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*on-plan-failure* ensure-interface begin-plan-in-interface
+(export '(*on-plan-failure* ensure-interface begin-plan-with-driver driver-for-plan
+          split-arguments
           note-robot-commanded pass-until final-state-of-task
           plan-ending-p))
 
@@ -15,62 +16,71 @@
 robot that the prompt commands. Signals MISUSE if several robots are possible, or the run is over."
   (check-not-over (current-simulation))
   (let ((robots (simulation-robots (current-simulation))))
-    (cond ((= 1 (length robots)) (first robots))
-          ((find (commanded-robot) robots))
-          (t (reject-use "There are ~D robots here. Choose the robot to drive before the plan, not ~
-                          in the plan: (rpl-init-robot ~:[ROBOT~;~:*~(~A~)~])."
-                         (length robots)
-                         (and robots (robot-name (first robots))))))))
+    (or (default-robot (current-simulation))
+        (reject-use "There are ~D robots here. Choose the robot to drive: (rpl-init-robot ~
+                     ~:[ROBOT~;~:*~(~A~)~]) before the plan, or :robot ROBOT after the arguments ~
+                     of the plan."
+                    (length robots)
+                    (and robots (robot-name (first robots)))))))
 
 (defun note-robot-commanded ()
   "Record that the prompt of this thread commands another robot from now on. Plans that begin later
 drive that robot, even after an RPL-INIT-ROBOT."
   (let ((interface (usable-interface)))
-    (when interface (setf (interface-commanded interface) :none))))
+    (when interface (setf (interface-default interface) nil))))
 
-(defun newly-commanded-robot (interface)
-  "If the prompt has changed to a robot since INTERFACE was made, and plans still drive another
-robot, return the robot that the prompt commands. Otherwise return NIL."
-  (let ((robot (and (interface-commanded interface) (commanded-robot))))
-    (and robot
-         (not (eq robot (interface-commanded interface)))
-         (not (eq robot (interface-robot interface)))
-         robot)))
+(defun driver-for-plan (robot)
+  "Return the driver for a plan that begins: of ROBOT or, if ROBOT is NIL, of the robot that the
+calling plan drives, or of the robot that plans drive by default."
+  (cond (robot (ensure-driver (robot-meant-in-plan robot)))
+        ((driver-here) (required-driver))
+        (t (ensure-driver (robot-to-drive)))))
 
 (defun ensure-interface ()
-  "Return the interface in use. Make a new interface if none is in use, or if the prompt has changed
-to another robot since. Signals MISUSE if plans still drive the robot of the old interface."
-  (let* ((interface (usable-interface))
-         (robot (and interface (newly-commanded-robot interface))))
-    (when (and robot (tasks-of-interface interface))
-      (reject-use "Plans drive one robot of a run at a time, now ~A. (end-plan :all) ends the ~
-                   plans of that robot."
-                  (interface-robot interface)))
-    (cond (robot (init-robot robot))
-          (interface)
-          (t (init-robot (robot-to-drive))))))
+  "Return the interface of the current run. Make a driver for the robot that plans drive by default,
+if there is none. Signals MISUSE if several robots are possible."
+  (driver-interface (driver-for-plan nil)))
 
-(defun begin-plan-in-interface (interface plan arguments note)
-  "Start PLAN with the list ARGUMENTS in INTERFACE, and return its task. Call the function NOTE with
+;;; A plan may take :ROBOT itself.
+
+(defun plan-takes-robot-p (plan)
+  "True if PLAN, a plan procedure or its name, has a keyword parameter :ROBOT."
+  (let* ((procedure (if (procedure-p plan) plan (find-procedure plan)))
+         (keys (shape-keys (lambda-list-shape (procedure-lambda-list procedure)))))
+    (and (listp keys) (member :robot keys))))
+
+(defun split-arguments (plan arguments)
+  "Return two values: ARGUMENTS, given for PLAN, without a final :ROBOT and its value; the value."
+  (let ((end (last arguments 2)))
+    (if (and (rest end) (eq :robot (first end)) (not (plan-takes-robot-p plan)))
+        (values (ldiff arguments end) (second end))
+        (values arguments nil))))
+
+(defun begin-plan-for (robot plan arguments)
+  (begin-plan-with-driver (ensure-driver robot) plan arguments #'identity))
+
+(defun begin-plan-with-driver (driver plan arguments note)
+  "Start PLAN with the list ARGUMENTS for DRIVER, and return its task. Call the function NOTE with
 the task before anything else can happen."
-  (check-not-secluded (interface-simulation interface))
-  (apply #'record-plan-action interface #'call-with-trace *trace-plans* #'begin-plan plan arguments)
-  (prog1 (with-plans (interface)
-           ;; Live, plans may not have reacted for long.
-           (note-tick (interface-runner interface)
-                      (simulation-tick (interface-simulation interface)))
-           (let ((task (apply #'start-plan (interface-runner interface) plan arguments)))
-             (funcall note task)
-             task))
-    (ensure-thread interface)
-    (wake-plans-or-owner interface)))
+  (let* ((interface (driver-interface driver)) (simulation (interface-simulation interface)))
+    (check-not-secluded simulation)
+    (record-plan-action interface #'call-with-trace *trace-plans* #'begin-plan-for
+                        (driver-robot driver) plan arguments)
+    (prog1 (with-plans (interface)
+             ;; Live, plans may not have reacted for long.
+             (note-tick (interface-runner interface) (simulation-tick simulation))
+             (let ((task (apply #'start-plan (driver-agent driver) plan arguments)))
+               (funcall note task)
+               task))
+      (ensure-thread interface)
+      (wake-plans-or-owner interface))))
 
-(defun warn-if-no-ticks-pass (plan interface)
-  "Warn once for the robot of INTERFACE if no ticks pass now, so that PLAN waits."
-  (let ((robot (interface-robot interface)))
+(defun warn-if-no-ticks-pass (plan driver)
+  "Warn once for the robot of DRIVER if no ticks pass now, so that PLAN waits."
+  (let ((robot (driver-robot driver)))
     (when (and (between-runs-p (robot-world robot)) (null *asker*) (not *caller-passes-ticks-p*))
       (warn-once-in-run
-       interface (list :kept (robot-name robot) :plan)
+       (driver-interface driver) (list :kept (robot-name robot) :plan)
        "The plan ~A waits until ticks pass: no ticks of ~A pass by themselves now. (run-ticks N) ~
         lets N ticks pass, (simulator '~(~A~)) lets time go on."
        (if (symbolp plan) (string-downcase plan) "that was begun")
@@ -79,10 +89,14 @@ the task before anything else can happen."
 (addition begin-plan)
 (defun begin-plan (plan &rest arguments)
   "Start PLAN, a plan procedure or its name, with ARGUMENTS, and return its task at once. PLAN runs
-as ticks pass in a headless run, and in the plans' thread in a live run. Signals UNKNOWN-NAME."
-  (let ((interface (ensure-interface)))
-    (prog1 (begin-plan-in-interface interface plan arguments #'identity)
-      (warn-if-no-ticks-pass plan interface))))
+as ticks pass in a headless run, and in the plans' thread in a live run. ARGUMENTS may end with
+:ROBOT and the robot, or its name, that PLAN drives, unless PLAN itself takes the keyword :ROBOT.
+Without it, PLAN drives the robot of the calling plan or, outside of plans, the robot that RUN-PLAN
+would choose. Signals UNKNOWN-NAME."
+  (multiple-value-bind (arguments robot) (split-arguments plan arguments)
+    (let ((driver (driver-for-plan robot)))
+      (prog1 (begin-plan-with-driver driver plan arguments #'identity)
+        (warn-if-no-ticks-pass plan driver)))))
 
 (defconstant +longest-report+ 4000
   "The largest number of characters in a report of plans.")
@@ -105,9 +119,11 @@ plan will ever go on, or :LIMIT at tick LAST."
       (run-ticks 1 simulation))))
 
 (defun final-state-of-task (interface task)
-  "Return TASK's state if over, :STOPPED if it evaporated with all plans of INTERFACE, else NIL."
+  "Return TASK's state if over, :STOPPED if it evaporated with all plans of its robot, else NIL."
   (cond ((not (task-over-p task)) nil)
-        ((or (ended-by-itself-p task) (interface-valid-p interface)) (task-state task))
+        ((or (ended-by-itself-p task)
+             (and (interface-valid-p interface) (driver-valid-p (driver-of-plan task))))
+         (task-state task))
         (t :stopped)))
 
 (defun run-headless (interface task)
@@ -132,7 +148,7 @@ calls from outside can wake the plans."
         (loop (cond ((ended-by-itself-p task) (return (task-state task)))
                     ((not (and (live-p simulation) (interface-valid-p interface)))
                      (return :stopped))
-                    ((task-over-p task) (return (task-state task)))
+                    ((task-over-p task) (return (final-state-of-task interface task)))
                     ;; A plan at a break holds the plans until that is answered, perhaps here.
                     ((and (not told)
                           (null (interface-holder interface))
@@ -200,20 +216,27 @@ of a successful plan may be NIL.
 is only a warning, since you may still make it happen.
   :limit: only in a headless run; *PLAN-LIMIT* ticks have passed.
   :stopped: the simulator was stopped or restarted, the robot was redefined, or another thread
-rewound the run. PLAN drives the robot of RPL-INIT-ROBOT or, without such a call, the only robot of
-the current simulation. At the prompt, PLAN drives the robot that the prompt commands, even if the
-prompt has changed to that robot since RPL-INIT-ROBOT. Failures, deadlocks and limits are reported.
+rewound the run. ARGUMENTS may end with :ROBOT and the robot that PLAN drives, as for BEGIN-PLAN.
+Otherwise PLAN drives the robot of the last RPL-INIT-ROBOT or, without such a call, the only robot
+of the current simulation. At the prompt, PLAN drives the robot that the prompt commands, even if
+the prompt has changed to that robot since RPL-INIT-ROBOT. Failures, deadlocks and limits are
+reported.
 RUN-PLAN ends a plan that is not over when RUN-PLAN returns or is aborted. But a plan of a rewound
 run continues in the run that replaces the rewound run. Signals UNKNOWN-NAME; and MISUSE, for
 example if the run is over before the plan begins."
-  (let ((interface (ensure-interface)))
+  (multiple-value-bind (arguments robot) (split-arguments plan arguments)
+    (run-plan-with-driver (driver-for-plan robot) plan arguments)))
+
+(defun run-plan-with-driver (driver plan arguments)
+  "Run PLAN with the list ARGUMENTS for DRIVER, and return what RUN-PLAN returns."
+  (let ((interface (driver-interface driver)))
     (check-may-wait interface)
     (let ((task nil) (state nil))
       (in-any-case
-        (progn (begin-plan-in-interface interface plan arguments
-                                        (lambda (begun)
-                                          (setf task begun)
-                                          (atomic-push begun (interface-awaited interface))))
+        (progn (begin-plan-with-driver driver plan arguments
+                                       (lambda (begun)
+                                         (setf task begun)
+                                         (atomic-push begun (interface-awaited interface))))
                (setf state (await-plan interface task))
                (when (eq :failed state) (warn-of-failure interface task)))
         (when (and task (not (task-over-p task))) (end-plans-of-interface interface task))
@@ -221,12 +244,16 @@ example if the run is over before the plan begins."
       (values (task-result task) state))))
 
 (addition plans)
-(defun plans ()
-  "Return a list of the tasks of the plans under way, in order of their start."
-  (let ((interface (usable-interface)))
+(defun plans (&optional robot)
+  "Return a list of the tasks of the plans under way, in order of their start: of all plans of the
+current run or, if ROBOT is given, of those that were begun for this robot, which may be given by
+its name. Signals UNKNOWN-NAME."
+  (let* ((robot (and robot (robot-meant-in-plan robot))) (interface (usable-interface)))
     (when interface
       (note-plans-shown interface)
-      (tasks-of-interface interface))))
+      (if robot
+          (let ((driver (find-driver robot interface))) (and driver (tasks-of-driver driver)))
+          (tasks-of-interface interface)))))
 
 (defun request-plan-end (interface task)
   "Request that the plan runner later evaporates TASK of INTERFACE, or all tasks if TASK is NIL."
@@ -269,28 +296,31 @@ run of INTERFACE in a rewind."
        (or (fork-p *simulation*)
            (eq *simulation* (latest-successor (interface-simulation interface))))))
 
-(defmethod current-counterpart ((interface interface) task)
-  (let ((latest (latest-successor (interface-simulation interface))))
+(defmethod current-counterpart ((driver driver) task)
+  (let* ((interface (driver-interface driver))
+         (latest (latest-successor (interface-simulation interface))))
     (cond ((in-later-run-p interface) (counterpart-of-task task *simulation*))
           ((not (eq latest (interface-simulation interface))) (counterpart-of-task task latest))
           (t task))))
 
 (defun task-in-current-run (task)
-  (let ((client (and (task-runner task) (runner-client (task-runner task)))))
+  (let ((client (and (task-agent task) (task-client task))))
     (if client (current-counterpart client task) task)))
 
 (addition end-plan)
-(defun end-plan (task)
-  "End the plan TASK, or all plans if it is :ALL. Their commands in progress are interrupted, except
-those of cleanups. Lisp code of a live plan that keeps the plans' thread is aborted. Any thread may
-end a TASK; a task of another simulation ends when that simulation goes on. A TASK that is over
-stays as it is. Returns nothing. Signals WRONG-ARGUMENT; and MISUSE if there is no robot for :ALL,
-or if the run was rewound to a tick before TASK began."
+(defun end-plan (task &key robot)
+  "End the plan TASK. If TASK is :ALL, end all plans of the run or, if ROBOT is given, all that were
+begun for this robot, which may be given by its name. Their commands in progress are interrupted,
+except those of cleanups. Lisp code of a live plan that keeps the plans' thread is aborted. Any
+thread may end a TASK; a task of another simulation ends when that simulation goes on. A TASK that
+is over stays as it is. Returns nothing. Signals WRONG-ARGUMENT; UNKNOWN-NAME; and MISUSE if no plan
+can run here, or if the run was rewound to a tick before TASK began."
   (check-argument end-plan task (or (eq task :all) (task-p task))
                   "a task, as begin-plan returns, or :ALL")
-  (if (eq task :all)
-      (end-plans-of-interface (required-interface) nil)
-      (end-task (task-in-current-run task)))
+  (check-argument end-plan robot (or (null robot) (eq task :all)) "NIL unless TASK is :ALL")
+  (cond ((not (eq task :all)) (end-task (task-in-current-run task)))
+        (robot (mapc #'end-task (plans robot)))
+        (t (end-plans-of-interface (required-interface) nil)))
   (values))
 
 ;;; The name of a plan that is not quoted is a variable to Lisp.

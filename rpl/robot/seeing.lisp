@@ -4,6 +4,22 @@
 
 (export '(call-with-plans-in-use))
 
+(defmethod owner-text ((driver driver))
+  (and (rest (simulation-robots (driver-simulation driver)))
+       (string-downcase (robot-label (driver-robot driver)))))
+
+(defun drivers-with-tasks (interface)
+  "Return the drivers of INTERFACE that have plans, in the order of their robots' names."
+  (sort (remove-if-not #'tasks-of-driver (copy-list (interface-drivers interface))) #'string<
+        :key (lambda (driver) (robot-full-name (driver-robot driver)))))
+
+(defun print-tasks-by-robot (interface stream all)
+  "Print the plans of INTERFACE to STREAM, below the names of their robots. ALL is as for
+PRINT-PLANS."
+  (dolist (driver (drivers-with-tasks interface))
+    (format stream "~A:~%" (owner-text driver))
+    (dolist (task (tasks-of-driver driver)) (print-tasks task stream all))))
+
 (defmethod runner-in-use ((interface interface))
   (interface-runner interface))
 
@@ -43,10 +59,17 @@
 
 (addition print-plans)
 (defun print-plans (&optional (stream *standard-output*) all)
-  "Print the running plans to STREAM, each as a tree of tasks: what each does and waits for. If ALL
-is true, also print stacks, variables and valves: see PRINT-TASKS."
+  "Print the running plans to STREAM, each as a tree of tasks: what each does and waits for. If the
+run has several robots, the plans of each robot are below its name. If ALL is true, also print
+stacks, variables and valves: see PRINT-TASKS."
   (if (usable-interface-p *default-interface*)
-      (call-with-plans-in-use (lambda (runner) (print-tasks runner stream all)))
+      (call-with-plans-in-use
+       (lambda (runner)
+         (let ((interface *default-interface*))
+           (if (and (rest (simulation-robots (interface-simulation interface)))
+                    (tasks-of-interface interface))
+               (print-tasks-by-robot interface stream all)
+               (print-tasks runner stream all)))))
       (format stream "No plans.~%")))
 
 (addition step-plan)

@@ -4,13 +4,14 @@
 
 (export '(*commanded-robot-hook*))
 
-(defun end-plans-in-this-thread (interface)
-  "End the plans of the closing INTERFACE in this thread. An interrupt ends one cleanup at most."
+(defun end-plans-in-this-thread (interface closed-p &optional (closing interface))
+  "End the plans of CLOSING, which is INTERFACE or a driver in it, in this thread. An interrupt ends
+one cleanup at most. The function CLOSED-P says whether CLOSING is closed."
   (flet ((end ()
            (with-plans (interface) (react-fully interface))))
     (in-any-case (end)
                  ;; It may have been left before it began.
-                 (unless (interface-closed-p interface) (end)))))
+                 (unless (funcall closed-p closing) (end)))))
 
 (defun close-interface (interface)
   "Detach INTERFACE from its simulation, and end its plans now. If the plans react in another
@@ -20,18 +21,15 @@ thread, or a plan has called this function, the plans end as soon as they can."
       (setf (interface-closing-p interface) t)
       (in-any-case
         (remove-participant interface (interface-simulation interface))
-        (removef (robot-enders (interface-robot interface)) (interface-ender interface))
+        (mapc #'close-driver (interface-drivers interface))
         (cond ((holding-plans-p interface) (stop-plan (interface-runner interface)))
               ((plans-thread interface) (wake-plans interface))
-              (t (end-plans-in-this-thread interface)))))))
+              (t (end-plans-in-this-thread interface #'interface-closed-p)))))))
 
 (defun attach-interface (interface)
   (let ((simulation (interface-simulation interface)))
-    (setf (interface-runner interface) (make-runner interface)
-          (interface-ender interface) (lambda () (close-interface interface)))
-    (asking (simulation)
-      (add-participant interface simulation)
-      (push (interface-ender interface) (robot-enders (interface-robot interface))))))
+    (setf (interface-runner interface) (make-runner interface))
+    (asking (simulation) (add-participant interface simulation))))
 
 ;; The prompt sets it to a function that returns the robot that it commands.
 (defvar *commanded-robot-hook* (constantly nil)
@@ -43,73 +41,114 @@ thread, or a plan has called this function, the plans end as soon as they can."
 (defun check-world-to-drive (robot)
   (let ((world (robot-world robot)))
     (unless (or (null *world*) (eq world *world*))
-      (reject-use "rpl-init-robot: ~A is not in the current world, ~:[which has another map~;but ~
-                   in another world of the same map~]. Call it where that robot is: inside of ~
-                   (with-simulation (~A) ...), or after (simulator ~A)."
+      (reject-use "No plan can drive ~A here: ~:*~A is not in the current world, ~:[which has ~
+                   another map~;but in another world of the same map. Put it into the list of ~
+                   robots of this run~]. Plans can drive it inside of (with-simulation (~A) ...), ~
+                   or after (simulator ~A)."
                   robot (eq (world-map world) (world-map *world*)) robot robot))))
 
 (defun plans-must-end-first-p (interface simulation)
-  "True if the plans of INTERFACE must end before other plans can run in SIMULATION. The plans of a
-live run go on while a headless simulation runs inside of the live run."
-  (or (eq simulation (interface-simulation interface))
-      (not (interface-valid-p interface))
+  "True if the plans of INTERFACE, of another run, must end before plans can run in SIMULATION. The
+plans of a live run go on while a headless simulation runs inside of the live run."
+  (or (not (interface-valid-p interface))
       (and (live-p simulation) (live-p (interface-simulation interface)))))
 
-(defun warn-of-ended-plans (interface robot)
-  "Warn once that plans of INTERFACE end because plans are to drive ROBOT. Warn only if ROBOT is
-another robot of the same run, or if one of these plans has called RPL-INIT-ROBOT itself."
-  (let* ((tasks (remove-if #'task-over-p (tasks-of-interface interface)))
-         (before (interface-robot interface))
-         (same-p (eq robot before)))
-    (when (and tasks
-               (interface-valid-p interface)
-               (or (not same-p) (participant-around-p interface))
-               (eq (interface-simulation interface) (robot-simulation robot)))
+(defun warn-of-plan-around (driver)
+  "Warn once if a plan of DRIVER calls RPL-INIT-ROBOT for its own robot, which ends the plan."
+  (let ((tasks (remove-if #'task-over-p (tasks-of-driver driver))))
+    (when (and tasks (participant-around-p (driver-interface driver)))
       (warn-once-in-run
-       interface (list :ended-by (robot-name before) (robot-name robot))
-       "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A~:[, because plans drive one robot at a ~
-        time. Let the plans end first, as (run-plan ...) does, or drive one of the robots by ~
-        commands and continuations~;. Call it before the plan, not in the plan~]."
-       robot (length tasks) (mapcar #'task-label tasks) before same-p))))
+       (driver-interface driver) (list :ended-by (robot-name (driver-robot driver)))
+       "rpl-init-robot ~A ends the plan~P ~{~A~^, ~} of ~A. Call it before the plan, not in the ~
+        plan."
+       (driver-robot driver) (length tasks) (mapcar #'task-label tasks) (driver-robot driver)))))
 
 ;; A binding of *TRACE-PLANS* around a call is gone when the call is repeated.
 (defun call-with-trace (traced-p function &rest arguments)
   (let ((*trace-plans* (or traced-p *trace-plans*)))
     (apply function arguments)))
 
-;; A repeated run gives the eras that it had, so that its tasks are recognized.
-(defun drive-robot-with-eras (robot eras)
-  "Let plans drive ROBOT, as RPL-INIT-ROBOT does, with the ERAS of tasks. Return the new interface."
+(defun add-interface (simulation eras)
+  "Return a new interface of SIMULATION with the ERAS of tasks, and use it from now on."
   ;; Other threads may set the variable meanwhile.
-  (let ((simulation (robot-simulation robot)) (before *default-interface*))
-    (record-outside-act simulation #'call-with-trace *trace-plans* #'drive-robot-with-eras robot
-                        eras)
+  (let ((before *default-interface*))
     (when (and before (plans-must-end-first-p before simulation)) (close-interface before))
-    (make-fluents robot)
-    (let ((interface (make-interface robot simulation eras (commanded-robot))))
+    (let ((interface (make-interface simulation eras)))
       (attach-interface interface)
       (setf *default-interface* interface)
       (when (eq simulation *simulation*) (store-environment simulation))
       interface)))
 
-(defun init-robot (robot)
+;; A repeated run gives the eras that it had, so that its tasks are recognized.
+(defun drive-robot-with-eras (robot eras default-p)
+  "Let plans drive ROBOT, as RPL-INIT-ROBOT does. ERAS are those of a new interface. If DEFAULT-P is
+true, plans drive ROBOT by default. Return the new driver."
+  (let ((simulation (robot-simulation robot)))
+    (record-outside-act simulation #'call-with-trace *trace-plans* #'drive-robot-with-eras robot
+                        eras default-p)
+    (let* ((interface (or (usable-interface) (add-interface simulation eras)))
+           (before (find-driver robot interface)))
+      (when before (close-driver before))
+      (let ((driver (add-driver robot interface)))
+        (when default-p (setf (interface-default interface) driver))
+        driver))))
+
+(defun init-robot (robot &optional default-p)
+  "Return a new driver for ROBOT."
   (check-world-to-drive robot)
-  (drive-robot-with-eras robot (list (cons (gensym "ERA") 0))))
+  (drive-robot-with-eras robot (list (cons (gensym "ERA") 0)) default-p))
 
 (public rpl-init-robot)
 (defun rpl-init-robot (robot)
   "Let plans drive ROBOT from now on: a robot, the name of a robot, or a fluent with such a value.
-Create new fluents for the robot and each of its parts. Return the robot (manual C). Running plans
-end; their cleanups run only as far as they take no time. Call RPL-INIT-ROBOT before the other
-functions with RPL- in their names. RUN-PLAN calls it for the only robot of a simulation or, at the
-prompt, for the robot that the prompt commands. Signals UNKNOWN-NAME. Signals MISUSE if the robot is
-in another world than the current one."
-  (let* ((named (fluent-value robot))
-         (robot (if (robot-p named) named (find-robot named)))
-         (before *default-interface*))
-    (when before (warn-of-ended-plans before robot))
-    (init-robot robot)
+Create new fluents for the robot and each of its parts. Return the robot (manual C). Plans that
+drive ROBOT end; their cleanups run only as far as they take no time. Plans of other robots go on.
+Plans that begin later drive ROBOT, unless they are begun with :ROBOT. Call RPL-INIT-ROBOT before
+the other functions with RPL- in their names. RUN-PLAN calls it for the only robot of a simulation
+or, at the prompt, for the robot that the prompt commands. Signals UNKNOWN-NAME. Signals MISUSE if
+the robot is in another world than the current one."
+  (let* ((robot (robot-meant-in-plan robot))
+         (interface (usable-interface))
+         (before (and interface (find-driver robot interface))))
+    (when before (warn-of-plan-around before))
+    (init-robot robot t)
     robot))
+
+(defun robot-meant-in-plan (robot)
+  "Return the robot that ROBOT, a robot, its name or a fluent with such a value, means."
+  (let ((named (fluent-value robot)))
+    (if (robot-p named) named (find-robot named))))
+
+(defun ensure-driver (robot)
+  "Return the driver of ROBOT, a robot of the current run. Make a driver if there is none."
+  (check-world-to-drive robot)
+  (let ((interface (usable-interface)))
+    (or (and interface (find-driver robot interface))
+        (init-robot robot))))
+
+(defun call-for-robot (robot operator arguments)
+  "Call OPERATOR, a plan function, with ARGUMENTS outside of plans, for ROBOT."
+  (let ((*repeated-driver* (ensure-driver robot)))
+    (apply operator arguments)))
+
+(addition robot-fluent)
+(defun robot-fluent (robot variable &optional index)
+  "Return the fluent of ROBOT, a robot or its name, that VARIABLE stands for: a symbol such as
+'ROBOT-STOPPED*. If VARIABLE stands for a vector of fluents, one for each part, return the fluent of
+part number INDEX, or the vector if INDEX is NIL. In a plan that drives ROBOT, the variable itself
+means the same. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if ROBOT is in another world."
+  (let ((robot (robot-meant-in-plan robot)))
+    (check-argument robot-fluent variable (assoc variable *fluent-variables*)
+                    "the name of a robot's fluent, such as 'robot-stopped*")
+    (let ((value (driver-fluent variable (ensure-driver robot))))
+      (cond ((null index) value)
+            ((and (simple-vector-p value) (whole-p index 0 (1- (length value))))
+             (svref value index))
+            (t (reject-argument 'robot-fluent 'index index
+                                (if (simple-vector-p value)
+                                    (format nil "the number of a part: there are ~D, counted from 0"
+                                            (length value))
+                                    "NIL, because the robot has one such fluent")))))))
 
 ;;; When a simulator starts.
 
@@ -140,15 +179,16 @@ return true. No other thread may touch the plans meanwhile."
              (not (skip-idle-tick (interface-runner interface) (timeline-tick timeline)))))))
 
 (defmethod participant-robot ((interface interface))
-  (interface-robot interface))
+  (let ((drivers (interface-drivers interface)))
+    (and drivers (null (rest drivers)) (driver-robot (first drivers)))))
 
 (defmethod participant-origin ((interface interface))
   (or (interface-origin interface)
-      (setf (interface-origin interface) (list "the plans of " (interface-robot interface)))))
+      (setf (interface-origin interface) (list "the plans of " (plans-owner interface)))))
 
 ;; If plans have a thread, only that runs them: it may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)
-  (note-outside-command interface)
+  (mapc #'note-outside-command (interface-drivers interface))
   (cond ((plans-thread interface)
          (when (or (time-to-wake-p interface) (not (plans-thread-wanted-p interface)))
            (wake-plans interface)))
@@ -162,7 +202,7 @@ return true. No other thread may touch the plans meanwhile."
                (with-plans (interface) (react-fully interface)))))
         ((tasks-of-interface interface) (ensure-thread interface))
         ;; Without plans what was posted is only applied.
-        ((interface-answers interface)
+        ((some #'driver-answers (interface-drivers interface))
          (with-plans (interface)
            (unless (tasks-of-interface interface) (react-fully interface))))))
 
@@ -181,7 +221,8 @@ return true. No other thread may touch the plans meanwhile."
       (plans-ready-p interface)))
 
 (defmethod participant-reseed ((interface interface) seed)
-  (reseed-runner (interface-runner interface) seed))
+  (dolist (driver (interface-drivers interface))
+    (reseed-agent (driver-agent driver) (+ seed (seed-of-robot driver)))))
 
 ;; The current step of a live plan cannot be waited for: then only whether it is at work counts.
 (defmethod participant-digest ((interface interface) digest)

@@ -4,11 +4,13 @@
 
 ;;; A command that a plan has issued is an ACTION until its last answer has been applied.
 
-(defstruct (action (:constructor make-action (command resource outcome task cleanup-p issue tick))
+(defstruct (action (:constructor make-action
+                       (driver command resource outcome task cleanup-p issue tick))
                    (:copier nil))
-  "A record that COMMAND, issued by a plan, is in progress on RESOURCE. TASK issued the command at
-TICK; TASK is NIL for calls from outside of plans. CLEANUP-P is true if the command is part of a
-cleanup. OUTCOME returns the settings of fluents for an answer."
+  "A record that COMMAND, issued by a plan, is in progress on RESOURCE, of the robot of DRIVER. TASK
+issued the command at TICK; TASK is NIL for calls from outside of plans. CLEANUP-P is true if the
+command is part of a cleanup. OUTCOME returns the settings of fluents for an answer."
+  (driver nil :type (or null driver) :read-only t)
   (command nil :type command :read-only t)
   (resource nil :read-only t)
   (outcome nil :type function :read-only t)
@@ -36,14 +38,27 @@ cleanup. OUTCOME returns the settings of fluents for an answer."
   (settings '() :type list :read-only t)
   (last-p nil :read-only t))
 
-(defun add-action (action interface)
-  (with-lock ((interface-actions-lock interface))
-    (setf (interface-actions interface) (append (interface-actions interface) (list action))))
+(defun add-action (action driver)
+  (with-lock ((driver-actions-lock driver))
+    (setf (driver-actions driver) (append (driver-actions driver) (list action))))
   action)
 
-(defun forget-action (action interface)
-  (with-lock ((interface-actions-lock interface))
-    (removef (interface-actions interface) action)))
+(defun forget-action (action driver)
+  (with-lock ((driver-actions-lock driver))
+    (removef (driver-actions driver) action)))
+
+(defvar *answered-driver* nil
+  "The driver of the robot whose fluents an outcome sets, while the outcome is computed.")
+
+(defun outcome-settings (outcome driver resource err &rest results)
+  "Return the settings of fluents of DRIVER when a command with OUTCOME ends."
+  (let ((*answered-driver* driver))
+    (apply outcome resource err results)))
+
+(defun action-settings (action err &rest results)
+  "Return the settings of fluents when ACTION ends with the error code ERR and RESULTS."
+  (apply #'outcome-settings (action-outcome action) (action-driver action)
+         (action-resource action) err results))
 
 (defun action-open-p (action)
   (not (or (action-told-p action) (action-over-p action))))
@@ -60,17 +75,17 @@ cleanup. OUTCOME returns the settings of fluents for an answer."
   "True if ERR comes with the last answer to COMMAND: a track is answered at its beginning and end."
   (or err (not (trait-p :begins command))))
 
-(defun add-answer (answer interface)
-  (with-lock ((interface-actions-lock interface))
-    (setf (interface-answers interface) (append (interface-answers interface) (list answer)))))
+(defun add-answer (answer driver)
+  (with-lock ((driver-actions-lock driver))
+    (setf (driver-answers driver) (append (driver-answers driver) (list answer)))))
 
-(defun take-answer (answer interface)
+(defun take-answer (answer driver)
   "Remove ANSWER from the answers not yet applied. If ANSWER is the last of its action, remove the
 action, too. Return true if ANSWER was not yet applied."
-  (with-lock ((interface-actions-lock interface))
-    (when (member answer (interface-answers interface))
-      (removef (interface-answers interface) answer)
-      (when (answer-last-p answer) (removef (interface-actions interface) (answer-action answer)))
+  (with-lock ((driver-actions-lock driver))
+    (when (member answer (driver-answers driver))
+      (removef (driver-answers driver) answer)
+      (when (answer-last-p answer) (removef (driver-actions driver) (answer-action answer)))
       t)))
 
 (defun interrupted-by-command-p (action)
@@ -85,53 +100,62 @@ time is carried out first, and a command in the background goes on."
 ;;; after a command gets the end of that command. The simulator's own later answer to an
 ;;; interrupted command sets only the fluents for the state of the robot: no error fluent, no pulse.
 
-(defun note-pulses (interface action settings)
-  "Record which fluents are pulsed in this tick by SETTINGS at the end of ACTION of INTERFACE."
+(defun note-pulses (driver action settings)
+  "Record which fluents are pulsed in this tick by SETTINGS at the end of ACTION of DRIVER."
   (when (action-task action)
     (loop with plan = (task-serial (task-top (action-task action)))
           for (kind fluent) in settings
           for name = (and (eq :pulse kind) (fluent-name fluent))
           when name
-            do (setf (interface-pulses interface)
-                     (cons (list name plan (simulation-tick (interface-simulation interface)))
-                           (remove name (interface-pulses interface)
+            do (setf (driver-pulses driver)
+                     (cons (list name plan (simulation-tick (driver-simulation driver)))
+                           (remove name (driver-pulses driver)
                                    :key #'first :test #'equal))))))
 
-(defmethod last-pulse-tick ((interface interface) task fluent)
-  (destructuring-bind (&optional name plan tick)
-      (assoc (fluent-name fluent) (interface-pulses interface) :test #'equal)
-    (and name (eql plan (task-serial (task-top task))) tick)))
+(defun driver-of-fluent (fluent interface)
+  "Return the driver in INTERFACE to whose robot FLUENT belongs, or NIL."
+  (find-if (lambda (driver)
+             (loop for (nil . value) in (driver-fluents driver)
+                     thereis (if (vectorp value) (find fluent value) (eq fluent value))))
+           (interface-drivers interface)))
 
-(defun apply-answer (answer interface)
+(defmethod last-pulse-tick ((driver driver) task fluent)
+  (let ((driver (driver-of-fluent fluent (driver-interface driver))))
+    (destructuring-bind (&optional name plan tick)
+        (and driver (assoc (fluent-name fluent) (driver-pulses driver) :test #'equal))
+      (and name (eql plan (task-serial (task-top task))) tick))))
+
+(defun apply-answer (answer driver)
   "Apply ANSWER to fluents, unless ANSWER was already applied. The caller holds the plans."
-  (when (take-answer answer interface)
+  (when (take-answer answer driver)
     (let ((action (answer-action answer)) (settings (answer-settings answer)))
       (setf (action-begun-p action) t)
-      (record-unread-end interface action (answer-err answer))
-      (unless (action-told-p action) (note-pulses interface action settings))
+      (record-unread-end driver action (answer-err answer))
+      (unless (action-told-p action) (note-pulses driver action settings))
       (with-answer ((action-issue action) (answer-err answer))
         (apply-settings (if (action-told-p action)
                             ;; What the robot is or has.
                             (remove :set settings :key #'first :test-not #'eq)
                             (settings-to-apply settings)))))))
 
-(defun post-answer (interface action err results)
-  "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of INTERFACE,
+(defun post-answer (driver action err results)
+  "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of DRIVER,
 unless the plans are about to end because their robot is gone."
   (let ((settings '()))
     (in-any-case
-      (setf settings (apply (action-outcome action) (action-resource action) err results))
+      (setf settings (apply #'action-settings action err results))
       (let ((answer (make-answer action err settings (final-answer-p (action-command action) err))))
-        (unless (interface-closing-p interface)
-          (add-answer answer interface)
-          (post-entry (interface-runner interface) (lambda () (apply-answer answer interface))))
+        (unless (driver-closing-p driver)
+          (add-answer answer driver)
+          (post-entry (driver-runner driver) (lambda () (apply-answer answer driver))
+                      (driver-agent driver)))
         (when (answer-last-p answer) (setf (action-over-p action) t))))))
 
-(defun make-action-continuation (interface action)
+(defun make-action-continuation (driver action)
   (setf (action-continuation action)
         (lambda (err resource &rest results)
           (declare (ignore resource))
-          (post-answer interface action err results))))
+          (post-answer driver action err results))))
 
 ;;; Interruptions, reported before the simulator does.
 
@@ -142,129 +166,148 @@ unless the plans are about to end because their robot is gone."
                   (lambda ()
                     (with-answer ((action-issue action) :interrupt)
                       (apply-settings (settings-to-apply
-                                       (funcall (action-outcome action) (action-resource action)
-                                                :interrupt)))))))
+                                       (action-settings action :interrupt)))))))
 
-(defun apply-answers-on (resource interface except)
-  (dolist (answer (interface-answers interface))
+(defun apply-answers-on (resource driver except)
+  (dolist (answer (driver-answers driver))
     (let ((action (answer-action answer)))
       (when (and (eq resource (action-resource action)) (not (eq action except)))
-        (notify-at-rest (action-task action) (lambda () (apply-answer answer interface)))))))
+        (notify-at-rest (action-task action) (lambda () (apply-answer answer driver)))))))
 
-(defun reacting-p (interface)
-  (eq *runner* (interface-runner interface)))
+(defun reacting-p (driver)
+  (eq *runner* (driver-runner driver)))
 
-(defun task-at-work (interface)
-  (let ((task (and (reacting-p interface) (current-task))))
+(defun task-at-work (driver)
+  (let ((task (and (reacting-p driver) (current-task))))
     (and task (eq :running (task-state task)) task)))
 
-(defun interrupt-older-actions (interface resource &key except (test #'interrupted-by-command-p))
+(defun interrupt-older-actions (driver resource &key except (test #'interrupted-by-command-p))
   "Report to plans the actions on RESOURCE that the running plan has interrupted: those that pass
 TEST, except the action EXCEPT. Do nothing outside of plans."
-  (when (reacting-p interface)
-    (apply-answers-on resource interface except)
-    (dolist (action (interface-actions interface))
+  (when (reacting-p driver)
+    (apply-answers-on resource driver except)
+    (dolist (action (driver-actions driver))
       (when (and (eq resource (action-resource action))
                  (not (eq action except))
                  (action-open-p action)
                  (funcall test action))
-        (warn-of-clash interface action except)
-        (warn-of-hasty-command interface action except)
+        (warn-of-clash driver action except)
+        (warn-of-hasty-command driver action except)
         (report-interrupted action)
-        (count-takeover interface resource (action-task action) (task-at-work interface))))))
+        (count-takeover driver resource (action-task action) (task-at-work driver))))))
 
 ;;; Issuing.
 
-(defun call-on-robot (interface function)
-  "Call FUNCTION, which does something with the robot of INTERFACE. If FUNCTION signals an error
+(defun call-on-robot (driver function)
+  "Call FUNCTION, which does something with the robot of DRIVER. If FUNCTION signals an error
 because the robot is gone, end the plan at work."
   (handler-bind ((error (lambda (condition)
                           (declare (ignore condition))
-                          (unless (interface-valid-p interface) (leave-plan)))))
+                          (unless (driver-valid-p driver) (leave-plan)))))
     (funcall function)))
 
-(defun issue-action (interface command resource arguments outcome issue)
+(defun issue-action (driver command resource arguments outcome issue)
   "Issue COMMAND on RESOURCE. OUTCOME returns fluent settings for its end; ISSUE is for the trace."
-  (let* ((task (task-at-work interface))
+  (let* ((task (task-at-work driver))
+         (occupied (occupied-resource command resource))
          (cleanup-p (and task (some #'task-cleaning (lineage task)) t))
-         (action (make-action command resource outcome task cleanup-p issue
-                              (simulation-tick (interface-simulation interface))))
+         (action (make-action driver command occupied outcome task cleanup-p issue
+                              (simulation-tick (driver-simulation driver))))
          (issued-p nil))
-    (when (and task (not cleanup-p)) (count-command task command outcome resource))
-    (add-action action interface)
+    (when (and task (not cleanup-p)) (count-command task driver command outcome resource))
+    (add-action action driver)
     (in-any-case
-      (progn (call-on-robot interface
+      (progn (call-on-robot driver
                             (lambda ()
                               (apply (command-name command) resource
                                      (append arguments
-                                             (list (make-action-continuation interface action))))))
+                                             (list (make-action-continuation driver action))))))
              (setf issued-p t))
-      (unless issued-p (forget-action action interface)))
-    (interrupt-older-actions interface resource :except action)))
+      (unless issued-p (forget-action action driver)))
+    (interrupt-older-actions driver occupied :except action)))
 
-(defun grab (interface resource)
+(defun grab (driver resource)
   "Interrupt all commands on RESOURCE, including those that take no time or run in the background."
-  (call-on-robot interface
-                 (lambda () (grab-resource resource (interface-simulation interface))))
-  (interrupt-older-actions interface resource :test (constantly t)))
+  (call-on-robot driver
+                 (lambda () (grab-resource resource (driver-simulation driver))))
+  (interrupt-older-actions driver resource :test (constantly t)))
 
 ;;; When a plan ends.
 
 ;; Another thread may end the run at any time, and the robot may be in another run by now: then the
 ;; end of the run has interrupted the command, or will.
-(defun interrupt-action (action interface)
-  "Interrupt the command of ACTION, unless the run of INTERFACE is over."
-  (let ((simulation (interface-simulation interface)))
+(defun interrupt-action (action driver)
+  "Interrupt the command of ACTION, unless the run of DRIVER is over."
+  (let ((simulation (driver-simulation driver)))
     (flet ((over-p ()
              (or (simulation-over simulation)
-                 (not (eq simulation (robot-simulation (interface-robot interface)))))))
+                 (not (eq simulation (robot-simulation (driver-robot driver)))))))
       (unless (over-p)
         (handler-case (withdraw-command (action-resource action) (action-continuation action))
           (misuse (condition) (unless (over-p) (error condition))))))))
 
 ;; Commands that were issued to clean up go on.
-(defun interrupt-actions (interface task)
-  "Interrupt the commands in progress of the top-level TASK, which has failed or evaporated."
-  (dolist (action (interface-actions interface))
+(defun interrupt-actions-on (driver task)
+  "Interrupt the commands in progress on the robot of DRIVER that the top-level TASK has issued."
+  (dolist (action (driver-actions driver))
     (when (and (action-open-p action)
                (action-task action)
                (eq task (task-top (action-task action)))
                (not (action-cleanup-p action))
                (not (command-instant-p (action-command action))))
-      (interrupt-action action interface)
+      (interrupt-action action driver)
       (report-interrupted action))))
+
+(defun interrupt-actions-of-others (driver)
+  "Interrupt the commands in progress on the robot of DRIVER, whose fluents are to be replaced, that
+plans of other robots have issued."
+  (with-owned-home ((driver-runner driver))
+    (dolist (action (driver-actions driver))
+      (when (and (action-open-p action)
+                 (action-task action)
+                 (not (eq driver (driver-of-plan (action-task action))))
+                 (not (command-instant-p (action-command action))))
+        (interrupt-action action driver)
+        (report-interrupted action)))))
+
+(defun interrupt-actions (interface task)
+  "Interrupt the commands in progress of the top-level TASK, which has failed or evaporated."
+  (dolist (driver (interface-drivers interface)) (interrupt-actions-on driver task)))
 
 ;;; Fluents are set by the commands of plans only. The end of a command of the prompt or a program
 ;;; sets none, so a plan such as (whenever robot-stopped* ...) does not react to it. A wait for one
 ;;; event is treated in warnings.lisp.
 
-(defun task-watching-end (interface command)
-  "Return a top-level task of INTERFACE that watches for the end of robot commands such as COMMAND,
-or NIL. This thread holds the plans of INTERFACE."
-  (let ((pulse (symbol-value (pulse-of-command command))))
+(defun task-watching-end (driver command)
+  "Return a top-level task that watches for the end of commands such as COMMAND to the robot of
+DRIVER, or NIL. This thread holds the plans."
+  (let ((pulse (driver-fluent (pulse-of-command command) driver)))
     (find-if (lambda (task)
                (let ((parts (waiting-parts task)))
                  (and (some #'waits-on-purpose-p parts) (member pulse (fluents-awaited parts)))))
-             (tasks-of-interface interface))))
+             (tasks-of-interface (driver-interface driver)))))
 
-(defun warn-of-outside-command (interface command)
-  (let ((task (call-with-plans-if-free (lambda () (task-watching-end interface command))
-                                       interface)))
+(defun warn-of-outside-command (driver command)
+  (let ((task (call-with-plans-if-free (lambda () (task-watching-end driver command))
+                                       (driver-interface driver))))
     (when task
       (warn-once-in-run
-       interface (list :outside (task-label task))
+       (driver-interface driver) (list :outside (task-label task))
        "~(~A~) has ended. No plan has issued it, so the plan ~A, which waits for ~A, is not woken. ~
         Issue the command in a plan: ~A."
        command (task-label task)
-       (fluent-text (symbol-value (pulse-of-command command)))
+       (fluent-text (driver-fluent (pulse-of-command command) driver))
        (plan-call-text command)))))
 
-(defun note-outside-command (interface)
-  (let* ((robot (interface-robot interface))
+(defun note-outside-command (driver)
+  (let* ((robot (driver-robot driver))
          (event (resource-event robot))
          (command (and (operation-p event)
-                       (not (find robot (interface-actions interface) :key #'action-resource))
+                       (not (find robot (driver-actions driver) :key #'action-resource))
                        (command-name (operation-command event))))
-         (before (shiftf (interface-outside interface) command)))
-    (when (and before (null command) (pulse-of-command before) (tasks-of-interface interface))
-      (warn-of-outside-command interface before))))
+         (before (shiftf (driver-outside driver) command)))
+    (when (and before
+               (null command)
+               (pulse-of-command before)
+               (tasks-of-interface (driver-interface driver)))
+      (warn-of-outside-command driver before))))

@@ -66,51 +66,57 @@ ERR. PART is the index of the part; NIL stands for the robot."
 (defun part-number (resource)
   (and (part-p resource) (part-index resource)))
 
-(defun unread-fluents (unread)
-  "Return the fluents that hold the results of the command in UNREAD. The error fluent comes last."
+(defun unread-fluents (unread driver)
+  "Return the fluents that hold the results of the command in UNREAD, a record of DRIVER. The error
+fluent comes last."
   (loop for variable in (get (unread-command unread) 'result-fluents)
-        for value = (symbol-value variable)
+        for value = (driver-fluent variable driver)
         collect (if (simple-vector-p value) (svref value (unread-part unread)) value)))
 
-(defun still-unread-p (unread)
-  (notany #'was-read-p (unread-fluents unread)))
+(defun still-unread-p (unread driver)
+  (notany #'was-read-p (unread-fluents unread driver)))
 
-(defun record-unread-end (interface action err)
-  "Record that ACTION of INTERFACE has ended with ERR, before plans can read ERR. The record
-replaces the record of an earlier end of the same command."
+(defun record-unread-end (driver action err)
+  "Record that ACTION of DRIVER has ended with ERR, before plans can read ERR. The record replaces
+the record of an earlier end of the same command."
   (let ((command (action-name action)) (task (action-task action))
         (part (part-number (action-resource action))))
-    (when (or err (interface-unread interface))
-      (setf (interface-unread interface)
+    (when (or err (driver-unread driver))
+      (setf (driver-unread driver)
             (remove-if (lambda (unread)
-                         (or (not (still-unread-p unread))
+                         (or (not (still-unread-p unread driver))
                              (and (eq command (unread-command unread))
                                   (eql part (unread-part unread)))))
-                       (interface-unread interface))))
+                       (driver-unread driver))))
     (when (and task
                (command-failed-p (action-command action) err)
                (not (action-told-p action))
                (not (action-cleanup-p action)))
       (let ((unread (make-unread (task-serial (task-top task)) command part err)))
-        (mapc #'forget-reading (unread-fluents unread))
+        (mapc #'forget-reading (unread-fluents unread driver))
         ;; A task that waits for one of them will be woken.
-        (when (still-unread-p unread) (push unread (interface-unread interface)))))))
+        (when (still-unread-p unread driver) (push unread (driver-unread driver)))))))
 
-(defun warn-of-unread-error (interface task)
-  "Warn once if a command of TASK failed, and TASK succeeded without reading the error."
+(defun warn-of-unread-error (driver task)
+  "Warn once if a command of TASK to the robot of DRIVER failed, and TASK succeeded without reading
+the error."
   (let* ((serial (task-serial task))
-         (all (interface-unread interface))
-         (unread (find-if #'still-unread-p (remove serial all :key #'unread-plan :test-not #'eql)))
-         (simulation (interface-simulation interface)))
-    (setf (interface-unread interface) (remove serial all :key #'unread-plan))
+         (all (driver-unread driver))
+         (unread (find-if (lambda (unread)
+                            (and (eql serial (unread-plan unread))
+                                 (still-unread-p unread driver)))
+                          all))
+         (simulation (driver-simulation driver)))
+    (setf (driver-unread driver) (remove serial all :key #'unread-plan))
     (when (and unread (not (message-queue-listener *message-queue*)))
       (warn-once (list :unread (task-label task)) (simulation-world simulation)
                  (format nil "The plan ~A succeeded, though its command rpl-~(~A~) ended with ~S, ~
                               and the plan did not look at ~A. After the wait write (if ~
                               (fluent-value ~:*~A) (fail ...)), or another reaction to the error."
                          (task-label task) (unread-command unread) (unread-err unread)
-                         (fluent-form-text (first (last (unread-fluents unread)))))
-                 :notable (or (live-p simulation) (lambda () (still-unread-p unread)))))))
+                         (fluent-form-text (first (last (unread-fluents unread driver)))))
+                 :notable (or (live-p simulation)
+                              (lambda () (still-unread-p unread driver)))))))
 
 ;;;; Commands that go on after their plan
 
@@ -127,14 +133,15 @@ replaces the record of an earlier end of the same command."
                         (not (action-cleanup-p action))
                         (action-task action)
                         (eq task (task-top (action-task action)))))
-                 (interface-actions interface)))
+                 (actions-of-interface interface)))
 
 (defun unawaited-advice (action)
   "Return a sentence that says what to do if ACTION should end with its plan; or NIL."
   (if (eq :evaporated (task-state (action-task action)))
       (format nil "The task that issued it was ended before, for example by a deadline. If the ~
                    command should end as well, stop the robot: (rpl-robot-stop).")
-      (let ((wait (wait-for-action-text (action-outcome action) (action-resource action))))
+      (let ((wait (wait-for-action-text (action-outcome action) (action-driver action)
+                                        (action-resource action))))
         (and wait (format nil "If the plan should end with the command, let the plan ~A." wait)))))
 
 (defun warn-of-unawaited-action (interface task)
@@ -207,7 +214,8 @@ replaces the record of an earlier end of the same command."
 
 (defun warn-of-stranded-plans (interface)
   (loop for (task parts) in (stranded-plans interface)
-        do (warn-of-stranded-task interface task parts)))
+        do (let ((*reported-robot* (robot-name-of-plan task)))
+             (warn-of-stranded-task interface task parts))))
 
 (defmethod participant-after-ticks ((interface interface) simulation)
   (unless (simulation-over simulation) (warn-of-stranded-plans interface)))

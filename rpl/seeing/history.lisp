@@ -27,7 +27,7 @@
 (defun ancestor-entries (number trace)
   "Return the entries of TRACE for the starts of task NUMBER and tasks around it, innermost first."
   (loop for each = number then (trace-entry-value start)
-        while each
+        while (integerp each)
         for start = (start-entry each trace)
         collect start))
 
@@ -119,13 +119,16 @@ text" :export)
   (calls '() list
          "the calls of procedures that the command was issued in, outermost first" :writable))
 
-(define-record (bar (:constructor make-bar (serial parent name form start depth)))
+(define-record (bar (:constructor make-bar (serial parent name form start depth
+                                            &optional owner)))
   "The period in which a task, or a call of a procedure within a task, was under way. A call has a
 bar only if the call issued commands."
   (serial 0 fixnum "the number of the task" :export)
   (parent nil (or null bar) "the bar that contains the bar, or NIL")
   (name nil t "the name of the task, or NIL" :export)
   (form nil t "the expression that the task ran" :export)
+  (owner nil (or null string) "the name of the plan's robot, if the run has several robots; NIL for
+parts of plans" :export)
   (start 0 real "the tick at which the task started" :export)
   (depth 0 fixnum "of how many tasks the task is part" :export)
   (end nil (or null real) "the tick at which the task ended, or the trace" :writable :export)
@@ -183,7 +186,8 @@ expression, by default a short text."
 (defun begin-bar (entry parent)
   (let ((bar (make-bar (trace-entry-task entry) parent (trace-entry-subject entry)
                        (trace-entry-form entry) (trace-entry-tick entry)
-                       (if parent (1+ (bar-depth parent)) 0))))
+                       (if parent (1+ (bar-depth parent)) 0)
+                       (if parent nil (trace-entry-value entry)))))
     (when parent (push bar (bar-parts parent)))
     bar))
 

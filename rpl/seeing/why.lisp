@@ -47,13 +47,13 @@ empty string if the task had not begun."
             (short-form-text (cons (issue-name issue) (issue-arguments issue)))
             (issue-task issue) (and entry (trace-entry-tick entry)))))
 
-(defun agent-description (agent trace)
-  (cond ((integerp agent)
-         (format nil "task ~D, ~A" agent (task-description agent trace)))
-        ((answer-p agent)
-         (format nil "the answer~@[ ~S~] to ~A" (answer-error agent)
-                 (issue-description (answer-issue agent) trace)))
-        (t (agent-text agent))))
+(defun asker-description (asker trace)
+  (cond ((integerp asker)
+         (format nil "task ~D, ~A" asker (task-description asker trace)))
+        ((answer-p asker)
+         (format nil "the answer~@[ ~S~] to ~A" (answer-error asker)
+                 (issue-description (answer-issue asker) trace)))
+        (t (asker-text asker))))
 
 (defun task-description (number trace)
   (let ((start (start-entry number trace)))
@@ -65,7 +65,7 @@ empty string if the task had not begun."
   (format nil "~A was ~:[pulsed~;set to ~:*~A~] by ~A~@[, at ~A~]"
           (fluent-text (trace-entry-subject entry))
           (and (eq :set (trace-entry-event entry)) (form-text (trace-entry-value entry) 40))
-          (agent-description (trace-entry-agent entry) trace)
+          (asker-description (trace-entry-asker entry) trace)
           (and (trace-entry-form entry) (short-form-text (trace-entry-form entry)))))
 
 ;;; Causes.
@@ -97,22 +97,22 @@ empty string if the task had not begun."
           ((fluent-p subject) (fluent-reason subject index trace))
           ((equal "" subject) "what it had to come after was over")
           (t (format nil "it was given ~A by ~A" (trace-entry-detail entry)
-                     (agent-description (trace-entry-agent entry) trace))))))
+                     (asker-description (trace-entry-asker entry) trace))))))
 
 (defun end-reason (entry index trace)
   "Return text that says why the task of ENTRY evaporated or began to clean up."
-  (let* ((agent (trace-entry-agent entry))
-         (other (and (integerp agent) (/= agent (trace-entry-task entry))))
+  (let* ((asker (trace-entry-asker entry))
+         (other (and (integerp asker) (/= asker (trace-entry-task entry))))
          (end (and other
                    (earlier-entry trace index
                                   (lambda (entry)
-                                    (and (= agent (trace-entry-task entry))
+                                    (and (= asker (trace-entry-task entry))
                                          (member (trace-entry-event entry) '(:succeed :fail))))))))
-    (cond (end (format nil "~A ~:[failed~;succeeded~]" (agent-description agent trace)
+    (cond (end (format nil "~A ~:[failed~;succeeded~]" (asker-description asker trace)
                        (eq :succeed (trace-entry-event end))))
-          (other (format nil "~A ended it" (agent-description agent trace)))
-          ((integerp agent) "it had cleaned up")
-          (t (format nil "~A ended it" (agent-description agent trace))))))
+          (other (format nil "~A ended it" (asker-description asker trace)))
+          ((integerp asker) "it had cleaned up")
+          (t (format nil "~A ended it" (asker-description asker trace))))))
 
 ;;; Sentences.
 
@@ -135,12 +135,12 @@ empty string if the task had not begun."
       (:failure (format nil "failed at ~A: ~A" form (cut (trace-entry-detail entry) 200)))
       (:evaporate (format nil "evaporated, because ~A" (end-reason entry index trace)))
       (:clean (format nil "began to clean up at ~A, because ~A" form
-                      (if (eql (trace-entry-agent entry) (trace-entry-task entry))
+                      (if (eql (trace-entry-asker entry) (trace-entry-task entry))
                           "it had reached that cleanup"
                           (end-reason entry index trace))))
       (:cleaned "had cleaned up")
       (:command (format nil "issued ~A" (trace-entry-detail entry)))
-      (:block (format nil "was blocked by ~A" (agent-description (trace-entry-agent entry) trace)))
+      (:block (format nil "was blocked by ~A" (asker-description (trace-entry-asker entry) trace)))
       (:unblock "was blocked no longer"))))
 
 ;; A construct that is decided while some parts are still to evaporate ends without a wake-up.
@@ -172,13 +172,13 @@ empty string if the task had not begun."
 
 (defun start-sentence (start trace)
   (let ((number (trace-entry-task start)) (parent (trace-entry-value start)))
-    (if parent
+    (if (integerp parent)
         (format nil "Task ~D, ~A, was started at tick ~D as a part of task ~D, ~A."
                 number (task-description number trace) (trace-entry-tick start) parent
                 (task-description parent trace))
-        (format nil "Task ~D is the plan ~A, started at tick ~D by ~A."
-                number (task-description number trace) (trace-entry-tick start)
-                (agent-description (trace-entry-agent start) trace)))))
+        (format nil "Task ~D is the plan ~A~@[ of ~A~], started at tick ~D by ~A."
+                number (task-description number trace) parent (trace-entry-tick start)
+                (asker-description (trace-entry-asker start) trace)))))
 
 (defun shorten-sentences (sentences)
   (let ((more (- (length sentences) *why-event-limit*)))

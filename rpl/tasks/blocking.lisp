@@ -97,10 +97,9 @@ itself, innermost first. Leave out parts that were stopped before."
 
 (defun request-yield-of-part (task)
   "If the running task is a part of TASK, let it yield after this step."
-  (let* ((runner (task-runner task))
-         (current (runner-current runner)))
+  (let ((current (runner-current (task-runner task))))
     (when (and current (eq (task-state current) :running) (part-of-p current task))
-      (setf (runner-mask runner) (logior +interrupt-bit+ (runner-mask runner))))))
+      (interrupt-running-task (task-agent current)))))
 
 (defun block-task (task &optional suspension)
   "Keep TASK from running. Blocks are counted. If SUSPENSION is true, TASK is shown as suspended."
@@ -109,7 +108,7 @@ itself, innermost first. Leave out parts that were stopped before."
     (when suspension (incf (task-suspensions task)))
     (note-status task (if (under-way-p task) :running (task-state task)))
     (when (under-way-p task)
-      (incf (runner-blocks (task-runner task)))
+      (incf (agent-blocks (task-agent task)))
       (note-event task :block)
       (request-yield-of-part task)
       (unless blocked (notify-blocked-parts task)))))
@@ -119,16 +118,16 @@ itself, innermost first. Leave out parts that were stopped before."
   (decf (task-blocked task))
   (when suspension (decf (task-suspensions task)))
   (when (under-way-p task)
-    (decf (runner-blocks (task-runner task)))
+    (decf (agent-blocks (task-agent task)))
     (unless (plusp (task-blocked task)) (note-event task :unblock))
     (note-status task :running)
-    (requeue-held-tasks (task-runner task))))
+    (requeue-held-tasks (task-agent task))))
 
 (defun check-same-runner (task other)
   "Signal MISUSE if TASK, the running task, and OTHER belong to different plan runners."
   (when (and (task-runner other) (not (eq (task-runner task) (task-runner other))))
-    (reject-use "~A belongs to the plans of another robot. The plans of this robot can apply ~
-                 only SUSPEND and WAKE-UP to it."
+    (reject-use "~A belongs to the plans of another run. The plans of this run can apply only ~
+                 SUSPEND and WAKE-UP to it."
                 (task-label other))))
 
 ;;; SUSPEND and WAKE-UP.
@@ -139,7 +138,7 @@ Otherwise post FUNCTION for the next reaction. WORD names what FUNCTION does to 
   (let ((runner (task-runner task)))
     (cond ((inside-plans-p runner) (funcall function))
           (t (note-from-outside word task)
-             (post-entry runner function))))
+             (post-entry runner function (task-agent task)))))
   task)
 
 (addition suspend)

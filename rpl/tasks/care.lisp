@@ -29,14 +29,14 @@ the failure as steps that would take as long, so that a plan that only fails use
                      (make-condition 'lisp-failure :condition condition
                                                    :backtrace (lisp-backtrace)))))
     (unless (failure-task-path failure)
-      (count-slow-step (if (typep failure 'lisp-failure) 5000 200) (task-runner task) task)
+      (count-slow-step (if (typep failure 'lisp-failure) 5000 200) (task-agent task) task)
       (setf (failure-task-path failure) (task-path task)
             (failure-tick failure) (runner-tick (task-runner task))
             (failure-plan-backtrace failure) (plan-backtrace task frame)
             (failure-form failure) (first (failure-plan-backtrace failure))
             (failure-cause failure) (or (failure-cause failure) (handled-failure task frame)))
       (note-event task :failure failure)
-      (note-plan-trouble (runner-client (task-runner task)) task failure)
+      (note-plan-trouble (task-client task) task failure)
       (call-listeners *failure-hooks* failure task frame))
     failure))
 
@@ -73,17 +73,21 @@ the failure as steps that would take as long, so that a plan that only fails use
                    (task-newer child) newer))
     (cons task (mapcan #'repair-part-links children))))
 
-(defun repair-queues (runner tasks)
-  "Rebuild the ready queues of RUNNER from TASKS, all its tasks. Only ready tasks are queued."
-  (loop for ring across (runner-rings runner)
+(defun empty-queues (agent)
+  (loop for ring across (agent-rings agent)
         do (fill (ring-items ring) nil)
            (setf (ring-start ring) 0
                  (ring-count ring) 0))
-  (setf (runner-mask runner) 0
-        (runner-held runner) '()
-        (runner-spent runner) '()
-        (runner-notices runner) '()
-        (runner-blocks runner) (reduce #'+ tasks :key #'task-blocked))
+  (setf (agent-mask agent) 0
+        (agent-held agent) '()
+        (agent-spent agent) '()
+        (agent-blocks agent) 0))
+
+(defun repair-queues (runner tasks)
+  "Rebuild the ready queues of RUNNER from TASKS, all its tasks. Only ready tasks are queued."
+  (mapc #'empty-queues (runner-agents runner))
+  (setf (runner-notices runner) '())
+  (dolist (task tasks) (incf (agent-blocks (task-agent task)) (task-blocked task)))
   (dolist (task tasks)
     (when (or (eq :running (task-state task)) (pending-notice-p (task-awaiting task)))
       (setf (task-awaiting task) nil
@@ -94,7 +98,8 @@ the failure as steps that would take as long, so that a plan that only fails use
   "Rebuild RUNNER's timers from its old timers and the timers of TASKS. Drop timers of ended tasks."
   (let* ((heap (timers-heap (runner-timers runner)))
          (timers (remove-duplicates (append (coerce heap 'list)
-                                            (remove nil (mapcar #'task-timer tasks)))
+                                            (mapcar #'task-timer tasks)
+                                            (mapcar #'task-awaiting tasks))
                                     :test #'eq)))
     (setf (fill-pointer heap) 0)
     (dolist (timer timers)
@@ -201,14 +206,14 @@ after any failure."
   (let ((restart (find-restart 'leave-plan)))
     (when restart (invoke-restart restart))))
 
-(defun call-with-plan-restarts (runner function fail end leave)
-  "Call FUNCTION with RUNNER and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
+(defun call-with-plan-restarts (agent function fail end leave)
+  "Call FUNCTION with AGENT and the restarts FAIL-TASK, LEAVE-PLAN and ABORT, which call FAIL,
 LEAVE and END. Any other non-local exit from a step also ends its plan; no retry is possible."
   (declare (type function function fail end leave))
   (labels ((in-step-p (&optional condition)
              (declare (ignore condition))
-             (running-task runner))
-           (current () (runner-current runner))
+             (running-task (agent-runner agent)))
+           (current () (runner-current (agent-runner agent)))
            (offer-failing (stream)
              (format stream "Let the task ~A fail." (task-label (current))))
            (plan () (task-label (task-top (current))))
@@ -223,7 +228,7 @@ LEAVE and END. Any other non-local exit from a step also ends its plan; no retry
                    (abort end :report-function #'offer-ending
                               :test-function #'in-step-p))
       (let ((*leaving-ends-work-p* #'in-step-p))
-        (funcall function runner)))))
+        (funcall function agent)))))
 
 ;;; The outcome of a step is a keyword:
 ;;;   :DONE    nothing happened;
@@ -232,10 +237,10 @@ LEAVE and END. Any other non-local exit from a step also ends its plan; no retry
 ;;;   :LEAVE   the restart LEAVE-PLAN.
 ;;; There is none if the step is left by another non-local exit, such as THROW.
 
-(defun call-to-outcome (runner function)
-  "Call FUNCTION with RUNNER. Return three values: the outcome of the step, the value of FUNCTION or
+(defun call-to-outcome (agent function)
+  "Call FUNCTION with AGENT. Return three values: the outcome of the step, the value of FUNCTION or
 the trouble it met, and whether the step may have stopped inside the simulator's own code."
-  (let ((trouble nil) (anywhere-p nil))
+  (let ((runner (agent-runner agent)) (trouble nil) (anywhere-p nil))
     (block call
       (labels ((meet (outcome) (return-from call (values outcome trouble anywhere-p)))
                (end () (meet :end))
@@ -269,14 +274,14 @@ the trouble it met, and whether the step may have stopped inside the simulator's
         (values :done
                 (handler-bind (((or error plan-failure storage-condition) #'note))
                   (answering-debugger (#'answer)
-                    (call-with-plan-restarts runner function #'fail #'end #'leave)))
+                    (call-with-plan-restarts agent function #'fail #'end #'leave)))
                 anywhere-p)))))
 
-(defun call-handling-trouble (runner function)
-  "Return FUNCTION's value for RUNNER. If a step met trouble, end or fail its task and return NIL."
-  (let ((outcome nil) (result nil) (anywhere-p nil))
+(defun call-handling-trouble (agent function)
+  "Return FUNCTION's value for AGENT. If a step met trouble, end or fail its task and return NIL."
+  (let ((runner (agent-runner agent)) (outcome nil) (result nil) (anywhere-p nil))
     (unwind-protect
-         (setf (values outcome result anywhere-p) (call-to-outcome runner function))
+         (setf (values outcome result anywhere-p) (call-to-outcome agent function))
       (cond ((null outcome) (repair-after-exit runner))
             ((or anywhere-p (eq outcome :end)) (repair-runner runner))))
     (ecase outcome

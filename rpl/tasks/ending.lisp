@@ -26,14 +26,13 @@
               (and (eq state :failed) result)
               (and (eq how :succeeded) result))
   (setf (task-state task) state
-        (task-result task) result
         (task-frame task) nil
-        (task-value task) nil
+        (task-value task) result
         (task-signal task) nil)
-  (decf (runner-alive (the plan-runner (task-runner task))))
+  (decf (runner-alive (the plan-runner (%task-runner task))))
   (when (plusp (task-blocked task))
-    (decf (runner-blocks (task-runner task)) (task-blocked task))
-    (requeue-held-tasks (task-runner task)))
+    (decf (agent-blocks (task-agent task)) (task-blocked task))
+    (requeue-held-tasks (task-agent task)))
   (note-status task state)
   (let ((parent (task-parent task)))
     (cond (parent
@@ -114,13 +113,9 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
         (timer (shiftf (task-timer task) nil)))
     (cond ((null awaited))
           ((watcher-p awaited) (unwatch awaited))
+          ((timer-p awaited) (cancel-timer awaited (runner-timers (%task-runner task))))
           (t (remove-waiting-task task awaited)))
-    (when timer (cancel-timer timer (runner-timers (task-runner task))))))
-
-(defun requeue-held-tasks (runner)
-  "Queue again those ready tasks of RUNNER that were put aside because they were blocked."
-  (dolist (task (nreverse (shiftf (runner-held runner) '())))
-    (when (eq (task-state task) :ready) (make-ready task))))
+    (when timer (cancel-timer timer (runner-timers (%task-runner task))))))
 
 (defun evaporate-now (task)
   "Let TASK evaporate at once, or start its cleanup. TASK must not be running or have children."
@@ -132,8 +127,8 @@ SIGNAL, or +PARKED+ if no frame handles SIGNAL and TASK has ended."
               (task-value task) value)
         (cond (queued                   ; but perhaps put aside
                (setf (task-round task) 0)
-               (requeue-spent-tasks (task-runner task))
-               (requeue-held-tasks (task-runner task)))
+               (requeue-spent-tasks (task-agent task))
+               (requeue-held-tasks (task-agent task)))
               (t (make-ready task)))))))
 
 (defun evaporate-children (task)
@@ -157,7 +152,7 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
            (note-from-outside #'evaporate task)
            (request-end task))
           (t (when (task-parent task)
-               (note-plan-trouble (runner-client (task-runner task)) task nil))
+               (note-plan-trouble (task-client task) task nil))
              (begin-evaporation task)))))
 
 (defun begin-evaporation (task)
@@ -166,12 +161,11 @@ calls EVAPORATE, it takes effect before the plan goes on. Signals WRONG-ARGUMENT
          (setf (frame-data (first (last (task-cleaning task)))) :evaporate))
         ((eq (task-state task) :running)
          (setf (task-signal task) :evaporate)
-         (setf (runner-mask (task-runner task))
-               (logior +interrupt-bit+ (runner-mask (task-runner task)))))
+         (interrupt-running-task (task-agent task)))
         (t (stop-waiting task)
            (evaporate-with-parts task)))
   ;; A blocked task may run again to clean up.
-  (when (runner-held (task-runner task)) (requeue-held-tasks (task-runner task))))
+  (when (agent-held (task-agent task)) (requeue-held-tasks (task-agent task))))
 
 (defun evaporate-with-parts (task)
   "Evaporate the children of TASK, and then TASK. TASK must not be running."

@@ -1,15 +1,11 @@
-;;;; engine.lisp -- running plans: reactions, batches from outside, time, and plans without a robot.
+;;;; engine.lisp -- running plans: their start and end, time, and plans without a robot.
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(advance-timers note-tick apply-next-batch close-runner digest-runner runner-idle-p
+(export '(advance-timers note-tick close-runner digest-runner runner-idle-p end-tasks-at-once
           make-plan-runner next-wake-time outside-request-p plan-deadlocked-p skip-idle-tick
-          react-to-all reseed-runner start-plan stop-plan))
+          reseed-agent start-plan stop-plan))
 
-;;; A reaction runs ready tasks until none is ready. Only then is the next posted batch applied, and
-;;; time passes only when there is none. So a task that issues a command and waits for its pulse has
-;;; reached the wait before the pulse can come.
-;;;
 ;;; The engine is independent of the simulator. Its client calls REACT-TO-ALL and ADVANCE-TIMERS,
 ;;; in one thread at a time; any thread may post.
 
@@ -17,7 +13,8 @@
                            (tick 0) client (busy-p (constantly nil)) (on-post #'list)
                            (attended-p (constantly nil))
                            (on-end #'report-end))
-  "Return a new plan runner whose time is TICK.
+  "Return a new plan runner whose time is TICK. It has no agents, but if BUDGET, CHARGED or DICE is
+true, it has one with these.
   TRACE: true to keep a trace.
   BUDGET: how many steps a reaction may take before time passes; NIL for no limit.
   CHARGED: if true, thinking with a stated cost takes ticks, and all reactions of a tick share
@@ -33,12 +30,14 @@ progress, may still post.
   CLIENT: any object, for which the runner works."
   (check-argument make-plan-runner budget (or (null budget) (whole-p budget 1))
                   "NIL or an integer from 1 to 1e9")
-  (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :budget budget
-                                   :charged-p (and charged t) :clock clock
-                                   :slow slow :dice dice :ticks-per-second ticks-per-second
+  (let ((runner (%make-plan-runner :trace (and trace (make-trace)) :clock clock
+                                   :slow slow :ticks-per-second ticks-per-second
                                    :tick tick :client client :busy-p busy-p :on-post on-post
                                    :attended-p attended-p :repairer #'repair-after-exit
                                    :on-end on-end)))
+    (when (or budget charged dice)
+      (add-agent runner (make-agent :client client :dice dice :budget budget
+                                    :charged-p (and charged t))))
     (when trace (trace-changes runner))
     runner))
 
@@ -50,125 +49,20 @@ progress, may still post.
   "The start of a plan counts as this number of steps of a reaction. So endless starts of plans use
 up the reaction before the heap. With a budget of steps, the start of a plan counts as one step.")
 
-(defun start-plan (runner plan &rest arguments)
-  "Start PLAN, a plan procedure or its name, with ARGUMENTS as a top-level task of RUNNER. Return
-the task, which runs at the next reaction."
+(defun start-plan (which plan &rest arguments)
+  "Start PLAN, a plan procedure or its name, with ARGUMENTS as a top-level task of WHICH, an agent
+or, for its first agent, a plan runner. Return the task, which runs at the next reaction."
   (multiple-value-bind (body environment) (apply #'enter-plan plan arguments)
-    (let ((name (if (procedure-p plan) (procedure-name plan) plan)))
+    (let* ((agent (agent-of which)) (runner (agent-runner agent))
+           (name (if (procedure-p plan) (procedure-name plan) plan)))
       (with-owned-home (runner)
-        (let ((task (spawn nil body environment 0 0 (make-task name body))))
-          (count-slow-step +steps-of-start+ runner)
+        (let ((task (make-task name body)))
+          (setf (task-agent task) agent)
+          (spawn nil body environment 0 0 task)
+          (count-slow-step +steps-of-start+ agent)
           (push task (runner-roots runner))
           (call-listeners *plan-start-hooks* task)
           task)))))
-
-;;; Reacting. In a round every ready task runs until it waits, ends or has used its slice. Then the
-;;; next post is applied. Tasks that have used their slices get new ones only when there are no
-;;; more posts. So a plan that never waits does not keep others from reacting. Where a tick has a
-;;; budget, slices are shares of it. A plan may then need several from a command to its wait, so
-;;; there another limit than slices decides when posts are applied.
-
-(defun run-ready-tasks (runner)
-  "Run the ready tasks of RUNNER. Return :idle when no ready task has steps left in its slice.
-Return :budget when the steps of the reaction are used up, or when all tasks stop while one thinks."
-  (loop
-    (when (runner-ends-requested runner) (end-requested-tasks runner))
-    (when (or (>= (runner-steps runner) (runner-limit runner))
-              (runner-tasks-stopped-p runner))
-      (return :budget))
-    (when (runner-notices runner) (deliver-due-notices runner))
-    (let ((task (take-ready-task runner)))
-      (cond (task (run-task task))
-            ((and (runner-notices runner) (deliver-due-notices runner)))
-            (t (return :idle))))))
-
-(defun run-round (runner)
-  "Run the ready tasks of RUNNER for one round, even if some meet trouble. Return RUN-READY-TASKS's
-value. If a tick's budget ends during a round, the next tick continues it, so no task loses its
-turn."
-  (unless (shiftf (runner-broken-off-p runner) nil)
-    (incf (runner-round runner)))
-  (let ((outcome (loop thereis (call-handling-trouble runner #'run-ready-tasks))))
-    (when (and (eq outcome :budget) (runner-charged-p runner))
-      (setf (runner-broken-off-p runner) t))
-    outcome))
-
-(defun apply-due-batch (runner)
-  "Apply the next posted batch if it is due at the end of a round of RUNNER. Return true if so."
-  (when (or (null (runner-spent runner))
-            (null (runner-budget runner))
-            (not (runner-charged-p runner))
-            (>= (- (runner-steps runner) (runner-batch-applied-at runner)) +steps-before-changes+))
-    (setf (runner-batch-applied-at runner) (runner-steps runner))
-    (apply-next-batch runner)))
-
-(defun run-rounds (runner)
-  "Run the ready tasks and apply the posts of RUNNER, until none are left. Return :idle or :budget."
-  (loop
-    (let ((outcome (run-round runner)))
-      (cond ((eq outcome :budget) (return :budget))
-            ((apply-due-batch runner))
-            ((runner-spent runner) (requeue-spent-tasks runner))
-            (t (return :idle))))))
-
-(defun form-using-operator (name form)
-  (cond ((operator-called-p form name) form)
-        ((consp form)
-         (or (form-using-operator name (car form)) (form-using-operator name (cdr form))))))
-
-(defun runaway-remedy (task)
-  (let* ((form (find-if (lambda (form)
-                          (operator-called-p form "LOOP" "HANDLE-FAILURE" "WITH-FAILURE-HANDLING"))
-                        (plan-backtrace task (task-frame task))))
-         (loop-p (operator-called-p form "LOOP"))
-         (wait (and loop-p (form-using-operator "WAIT-FOR" form))))
-    (cond (wait
-           (format nil "~A does not wait if its condition is true already. Also wait until it ~
-                        is false, or write (wait-time 1)." (form-text wait)))
-          ((and form (not loop-p) (form-using-operator "RETRY" form))
-           (one-line "If it fails again at once, write (wait-time 1) before (retry), or count how
-often: (do-retry tries (retry)) in (with-retry-counters ((tries 3)) ...)."))
-          (t (format nil "If the plan is to wait, write (wait-time 1) there~:[~;; if the loop is ~
-                          to end, write (return)~]. Ctrl-C interrupts RUN-PLAN." loop-p)))))
-
-(defun warn-of-runaway (runner)
-  (let* ((task (find :ready (append (runner-spent runner)
-                                    (remove nil (coerce (ring-items (svref (runner-rings runner) 0))
-                                                        'list)))
-                     :key #'task-state))
-         (form (and task (task-form task))))
-    (when (and task (first-warning-p form runner))
-      (warn-at-once "A plan took " *runaway-limit* " steps without waiting, at " (form-text form)
-                    " in " (task-label task) "; time passes all the same. "
-                    (runaway-remedy task)))))
-
-(defun react-to-all (runner)
-  "Let RUNNER run its ready tasks and apply all posts, one after the other, and return :idle. If the
-budget of steps is used up first, return :budget; the rest waits for the next reaction. Without a
-budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
-  (with-owned-home (runner)
-    (give-budget runner)
-    (let ((outcome (let ((*leaves-offer-restarts* *break-on-user-error*))
-                     (run-rounds runner))))
-      (when (and (eq outcome :budget)
-                 (null (runner-budget runner))
-                 (not (runner-exhausted runner))
-                 (not (runner-tasks-stopped-p runner)))
-        (warn-of-runaway runner))
-      outcome)))
-
-;;; Posting: any thread may POST a function of no arguments, or a batch of settings that are applied
-;;; at one instant, see APPLY-SETTINGS. Each is done between two reactions, in the order of posting.
-
-(defun apply-next-batch (runner)
-  "Apply the oldest post of RUNNER, a batch or call. Return true if so. Errors become messages."
-  (multiple-value-bind (entry there) (take-posted-entry runner)
-    (when there
-      (with-owned-home (runner)
-        (if (functionp entry)
-            (call-user-code entry "a call posted to a plan runner")
-            (call-user-code #'apply-settings "a batch posted to a plan runner" entry)))
-      t)))
 
 ;;; Ending.
 
@@ -176,16 +70,28 @@ budget, stop after *RUNAWAY-LIMIT* steps, with a warning."
   "From any thread, evaporate TASK, or all tasks of RUNNER if TASK is NIL, before the next step."
   (mapc #'request-end (if task (list task) (plan-runner-tasks runner))))
 
-(defun close-runner (runner)
-  "Evaporate all tasks of RUNNER. Cleanups run as far as they take no time; the other cleanups are
-abandoned, with a warning for each. No task is left. Charges end, and posts are ignored."
-  (set-charges runner nil nil)
-  (stop-plan runner)
-  (react-to-all runner)
-  (loop for part = (some #'cleaning-part (plan-runner-tasks runner))
+(defun end-at-once (runner tasks &optional only)
+  "End the top-level TASKS of RUNNER. Give up cleanups that take time. ONLY is as for REACT."
+  (dolist (agent (or only (runner-agents runner))) (set-charges agent nil nil))
+  (mapc #'request-end tasks)
+  (react runner only)
+  (loop for part = (some #'cleaning-part (remove-if #'task-over-p tasks))
         while part
         do (with-owned-home (runner) (give-up-cleanup part))
-           (react-to-all runner))
+           (react runner only)))
+
+(defun end-tasks-at-once (runner tasks)
+  "Evaporate the top-level TASKS of RUNNER, which must not be reacting. Cleanups run as far as they
+take no time; the other cleanups are abandoned, with a warning for each. Charges of the agents of
+TASKS end: see SET-CHARGES. Plans of other agents do not go on meanwhile."
+  (let ((agents (remove-duplicates (mapcar #'task-agent tasks))))
+    (when tasks
+      (end-at-once runner tasks (and (set-difference (runner-agents runner) agents) agents)))))
+
+(defun close-runner (runner)
+  "Evaporate all tasks of RUNNER, as END-TASKS-AT-ONCE does. No task is left. Charges end, and posts
+are ignored."
+  (end-at-once runner (plan-runner-tasks runner))
   (setf (home-closed-p runner) t))
 
 ;;; Time.
@@ -218,8 +124,8 @@ abandoned, with a warning for each. No task is left. Charges end, and posts are 
     (unless (or (and wake (<= wake tick))
                 (not (runner-idle-p runner))
                 (runner-notices runner)
-                (runner-charged-p runner)
-                (runner-budget runner)
+                (loop for agent in (runner-agents runner)
+                      thereis (or (agent-charged-p agent) (agent-budget agent)))
                 (home-busy-p runner))
       (setf (runner-tick runner) tick)
       t)))
@@ -233,16 +139,26 @@ abandoned, with a warning for each. No task is left. Charges end, and posts are 
 
 ;;; Chance, and the state of it all.
 
-(defun reseed-runner (runner seed)
-  "From now on, draw the random choices of plans in RUNNER from the integer SEED."
-  (setf (runner-dice runner) (make-dice seed :plans)
-        (runner-lisps-dice runner) nil))
+(defun reseed-agent (agent seed &optional (purpose :plans))
+  "From now on, draw the random choices of plans of AGENT from the integer SEED and from PURPOSE, a
+string designator."
+  (setf (agent-dice agent) (make-dice seed purpose)
+        (agent-lisps-dice agent) nil))
+
+(defun state-of-agent (agent)
+  "Return a list of the state of the dice of AGENT, its debt, and until when it is stopped. Without
+AGENT, return that of a new agent."
+  (if agent
+      (list (and (agent-dice agent) (dice-state (agent-dice agent)))
+            (agent-debt agent) (agent-still-until agent))
+      (list nil 0 nil)))
 
 (defun digest-runner (runner digest)
-  "Add the state of RUNNER to DIGEST: its tasks, the tick of its next timer, its dice and charges."
-  (digest-add digest (list (runner-tick runner) (next-wake-time runner)
-                           (and (runner-dice runner) (dice-state (runner-dice runner)))
-                           (runner-debt runner) (runner-still-until runner)))
+  "Add the state of RUNNER to DIGEST: its tasks, the tick of its next timer, and the dice and
+charges of its agents."
+  (destructuring-bind (&optional first &rest others) (runner-agents runner)
+    (digest-add digest (list* (runner-tick runner) (next-wake-time runner) (state-of-agent first)))
+    (dolist (agent others) (digest-add digest (state-of-agent agent))))
   (dolist (task (mapcan #'all-tasks (runner-roots runner)))
     (digest-add digest (list (task-serial task) (task-state task) (task-level task)
                              (form-text (task-form task))))))

@@ -94,7 +94,7 @@ value of NODE. A leaf has no separate frame."
   "Note that TASK waits for AWAITING. The current step of TASK must then return +PARKED+."
   (setf (task-state task) :waiting
         (task-awaiting task) awaiting
-        (task-since task) (runner-tick (the plan-runner (task-runner task))))
+        (task-since task) (runner-tick (the plan-runner (%task-runner task))))
   (note-event task :wait (traced-subject awaiting)))
 
 (defun wake (task value &optional (reason (task-awaiting task)))

@@ -5,7 +5,8 @@
 (export '(notify-at-rest spawn))
 
 ;;; A task must not notify another by a pulse before the other waits for it. So the sender waits
-;;; until the receiver is at rest: until it waits, is over, is blocked, or has used its slice.
+;;; until the receiver is at rest: until it waits, is over, is blocked, or has used its slice;
+;;; or, if it belongs to another agent, until that agent is out of the reaction.
 
 (defstruct (pending-notice (:constructor make-pending-notice (receiver sender function))
                            (:copier nil))
@@ -17,11 +18,14 @@
 (defmethod awaited-text ((notice pending-notice))
   (format nil "task ~D to be at rest" (task-serial (pending-notice-receiver notice))))
 
-(defun at-rest-p (task runner)
-  (case (task-state task)
-    (:running nil)
-    (:ready (or (slice-spent-p task runner) (blocked-p task)))
-    (t (not (pending-notice-p (task-awaiting task))))))
+(defun at-rest-p (task sender)
+  "True if the task SENDER may notify TASK now."
+  (let ((agent (task-agent task)))
+    (case (task-state task)
+      (:running nil)
+      (:ready (or (slice-spent-p task) (blocked-p task)
+                  (and (not (eq agent (task-agent sender))) (agent-out-p agent))))
+      (t (not (pending-notice-p (task-awaiting task)))))))
 
 (defun notify-at-rest (receiver function)
   "Call FUNCTION, which notifies the task RECEIVER, when RECEIVER is at rest. If RECEIVER is at rest
@@ -33,15 +37,15 @@ the running task wait until then."
                (not (eq runner (task-runner receiver)))
                ;; Live, answers come in meanwhile, and a sender that waits could miss its own.
                (funcall (runner-attended-p runner))
-               (at-rest-p receiver runner))
+               (at-rest-p receiver sender))
            (funcall function))
           (t (deliver-notices (remove sender (runner-notices runner)
                                       :key #'pending-notice-receiver :test-not #'eq)
                               runner)
              (setf (runner-notices runner)
                    (append (runner-notices runner)
-                           (list (make-pending-notice receiver sender function)))
-                   (runner-mask runner) (logior +interrupt-bit+ (runner-mask runner)))))))
+                           (list (make-pending-notice receiver sender function))))
+             (interrupt-running-task (task-agent sender))))))
 
 (defun wait-for-delivery (task frame value)
   "If TASK must deliver a notice before it goes on with FRAME and VALUE, let it wait. True if so."
@@ -65,11 +69,14 @@ the running task wait until then."
     (mapc #'deliver-notice notices)
     t))
 
+(defun due-notices (runner)
+  "Return the notices of RUNNER whose receivers are at rest."
+  (remove-if-not (lambda (notice)
+                   (at-rest-p (pending-notice-receiver notice) (pending-notice-sender notice)))
+                 (runner-notices runner)))
+
 (defun deliver-due-notices (runner)
-  (deliver-notices (remove-if-not (lambda (notice)
-                                    (at-rest-p (pending-notice-receiver notice) runner))
-                                  (runner-notices runner))
-                   runner))
+  (deliver-notices (due-notices runner) runner))
 
 ;;; Before each step a task yields to a ready task of a higher level, so that a policy reacts to the
 ;;; last step before the next one is taken.
@@ -140,15 +147,15 @@ the running task wait until then."
   "Evaporate TASK if requested, or let it yield if its steps are used up or a higher level is ready.
 FRAME and VALUE come from the last step. Return the frame and value for RUN-STEPS to continue."
   (when (runner-ends-requested (task-runner task)) (end-requested-tasks (task-runner task)))
-  (let* ((runner (task-runner task))
-         (mask (logandc2 (runner-mask runner) +interrupt-bit+))
+  (let* ((agent (task-agent task))
+         (mask (logandc2 (agent-mask agent) +interrupt-bit+))
          (preempted (>= mask (ash 2 (task-level task))))
-         (spent (>= (runner-steps runner) (runner-pause runner)))
-         (kept (and (plusp (runner-blocks runner)) (blocked-p task))))
-    (setf (runner-mask runner) mask)
+         (spent (>= (agent-steps agent) (agent-pause agent)))
+         (kept (and (plusp (agent-blocks agent)) (blocked-p task))))
+    (setf (agent-mask agent) mask)
     (cond ((task-signal task) (evaporate-self task frame))
           ((or (null frame) (eq frame +parked+)) (values frame value))
-          ((and (runner-notices runner) (wait-for-delivery task frame value)) +parked+)
+          ((and (runner-notices (task-runner task)) (wait-for-delivery task frame value)) +parked+)
           ((not (or preempted spent kept)) (values frame value))
           (t (setf (task-frame task) frame
                    (task-value task) value)
@@ -158,53 +165,54 @@ FRAME and VALUE come from the last step. Return the frame and value for RUN-STEP
 (defun run-steps (task frame value)
   "Run TASK from FRAME with VALUE until it waits, yields or ends."
   (declare #.*hot* (type task task))    ; 15 ns a step beyond what the step does
-  (let* ((runner (task-runner task))
+  (let* ((agent (task-agent task))
+         (runner (%task-runner task))
          (watched (or (clock-seconds runner) (runner-stepper runner) *leaves-offer-restarts*))
          (higher (ash 2 (task-level task))))
-    (declare (type plan-runner runner))
+    (declare (type agent agent) (type plan-runner runner))
     (loop
-      (when (or (>= (runner-mask runner) higher)
-                (>= (runner-steps runner) (runner-pause runner))
+      (when (or (>= (agent-mask agent) higher)
+                (>= (agent-steps agent) (agent-pause agent))
                 (runner-ends-requested runner))
         (multiple-value-setq (frame value) (check-interruptions task frame value)))
       (cond ((null frame) (return (finish-task task :succeeded (single-value value))))
             ((eq frame +parked+) (return)))
       (setf (task-frame task) frame)
-      (incf (runner-steps runner))
+      (incf (agent-steps agent))
       (let ((node (frame-node frame)))
         (multiple-value-setq (frame value)
           (if watched
               (instrumented-step node task frame value)
               (funcall (node-step node) node task frame value)))))))
 
-(defun begin-turn (task runner)
-  "Give TASK the rest of its slice in this round of RUNNER, or a new slice if it has had none."
-  (declare #.*hot* (type task task) (type plan-runner runner))
-  (unless (= (task-round task) (runner-round runner))
-    (setf (task-round task) (runner-round runner)
-          (task-slice task) (runner-slice runner)))
-  (let ((slice (+ (runner-steps runner) (max 0 (task-slice task)))))
-    (setf (runner-pause runner)
-          (if (task-uncounted-p task) slice (min (runner-limit runner) slice)))))
+(defun begin-turn (task agent)
+  "Give TASK the rest of its slice in this round of AGENT, or a new slice if it has had none."
+  (declare #.*hot* (type task task) (type agent agent))
+  (unless (= (task-round task) (agent-round agent))
+    (setf (task-round task) (agent-round agent)
+          (task-slice task) (agent-slice agent)))
+  (let ((slice (+ (agent-steps agent) (max 0 (task-slice task)))))
+    (setf (agent-pause agent)
+          (if (task-uncounted-p task) slice (min (agent-limit agent) slice)))))
 
 (defun run-task (task)
   "Run TASK, which was just taken from a ready queue, or deliver its signal."
   (let* ((frame (task-frame task))
          (value (shiftf (task-value task) nil))
          (signal (task-signal task))
-         (runner (task-runner task))
-         (start (runner-steps runner)))
+         (agent (task-agent task))
+         (start (agent-steps agent)))
     (setf (task-state task) :running
-          (runner-current runner) task)
-    (begin-turn task runner)
+          (runner-current (%task-runner task)) task)
+    (begin-turn task agent)
     (let ((*asker* task))
       (when signal
         (setf (task-signal task) nil)
         (multiple-value-setq (frame value) (receive-signal task frame signal)))
       (run-steps task frame value))
-    (let ((taken (- (runner-steps runner) start)))
+    (let ((taken (- (agent-steps agent) start)))
       (decf (task-slice task) taken)
-      (when (task-uncounted-p task) (uncount-steps runner taken)))))
+      (when (task-uncounted-p task) (uncount-steps agent taken)))))
 
 (defun check-task-limit (runner)
   (unless (< (runner-alive runner) *plan-task-limit*)
@@ -214,12 +222,12 @@ FRAME and VALUE come from the last step. Return the frame and value for RUN-STEP
                     (runner-alive runner)))))
 
 (defun spawn (parent node environment index level &optional (task (make-task nil node)))
-  "Start TASK to run NODE in ENVIRONMENT, and return TASK. TASK is part number INDEX of PARENT, or a
-top-level task if PARENT is NIL."
-  (let ((runner (if parent (task-runner parent) *runner*)))
+  "Start TASK to run NODE in ENVIRONMENT, and return TASK. TASK is part number INDEX of PARENT, or,
+if PARENT is NIL, a top-level task of its agent."
+  (let* ((agent (task-agent (or parent task))) (runner (agent-runner agent)))
     (check-task-limit runner)
     (incf (runner-alive runner))
-    (setf (task-runner task) runner
+    (setf (task-agent task) agent
           (task-serial task) (incf (runner-serial runner))
           (task-level task) (min level (1- +levels+))
           (task-node task) node
@@ -228,8 +236,9 @@ top-level task if PARENT is NIL."
     (when parent
       (link-child task parent)
       (when (task-uncounted-p parent) (setf (task-uncounted-p task) t)))
-    (incf (runner-blocks runner) (task-blocked task))
-    (note-event task :start (task-name task) (and parent (task-serial parent)))
+    (incf (agent-blocks agent) (task-blocked task))
+    (note-event task :start (task-name task)
+                (if parent (task-serial parent) (owner-text (agent-client agent))))
     (note-status task :running)
     (make-ready task)
     task))

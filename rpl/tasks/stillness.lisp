@@ -148,7 +148,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
 
 (defun command-advice (tasks)
   (let* ((task (first tasks)) (plan (task-label (task-top task)))
-         (client (runner-client (task-runner task))))
+         (client (task-client task)))
     (multiple-value-bind (name part) (and client (last-command client task))
       (cond
         ((null client)
@@ -178,7 +178,7 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
   (loop for task in tasks
         for subject = (traced-subject (task-awaiting task))
         for tick = (and (fluent-p subject)
-                        (last-pulse-tick (runner-client (task-runner task)) task subject))
+                        (last-pulse-tick (task-client task) task subject))
         when tick
           return (format nil "~A was pulsed at tick ~D, before this wait began; only a later ~
                               pulse can end the wait. To wait for several fluents, write (par ~

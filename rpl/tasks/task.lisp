@@ -5,7 +5,7 @@
 (export '(current-form form-text whole-form-text forms-under-way frames-by-expression frame
                        frame-state
           make-frame make-task node task-label evaporating-p part-of-p lineage frame-chain
-          frames-around under-way-p frame-p))
+          frames-around under-way-p frame-p task-runner))
 
 ;;; A plan is a graph of nodes, its expressions. A task runs one of them as a chain of frames, the
 ;;; innermost of which is the task's own FRAME. All state of a task is in its frames and their
@@ -59,7 +59,8 @@ MEMORY" :writable :export))
   (name nil t "the name of the task: its tag, the name of its procedure, or
 NIL" :writable :addition)
   (node nil node "the expression that the task runs" :writable)
-  (runner nil t "the plan runner that the task belongs to" :writable :export)
+  (agent nil (or null agent) "the agent that the task belongs to, NIL until the task
+starts" :writable :export)
   (serial 0 fixnum "the number of the task within its plan runner" :writable :addition)
   (state :created keyword "the task's state: :created, :ready, :running, :waiting, or at the end
 :succeeded, :failed or :evaporated" :writable :addition)
@@ -70,36 +71,34 @@ level of its body" :writable :export)
          "the number of the task among the parts of the task around it, from 0" :writable :export)
   (frame nil (or null frame) "the innermost frame of the task, NIL if the task is
 over" :writable :export)
-  (value nil t "the value with which the task's innermost frame goes on" :writable)
+  (value nil t "the value with which the task's innermost frame goes on; if the task is over, its
+result" :writable)
   (signal nil t "the signal that the task will receive instead of going on, or
 NIL" :writable :export)
   (awaiting nil t "the object that the task waits for: a watcher, a timer, a claim to a valve, a
 text; or NIL" :writable :export)
   (since 0 real "the tick at which the current or last wait of the task began" :writable :addition)
-  (timer nil (or null timer)
-         "the timer that ends the task's wait at its time limit, or NIL" :writable :export)
-  (cleaning '() list "the frames of the task that clean up, innermost first" :writable :export)
-  (blocked 0 fixnum "the number of blocks that keep the task from running" :writable)
-  (round 0 fixnum "the round of its plan runner in which the task last ran" :writable)
+  (round 0 fixnum "the round of its agent in which the task last ran" :writable)
   (slice 0 fixnum "the number of steps that the task may still take in that round" :writable)
-  (result nil t
-          "the value of the task if it succeeded, or its failure if it failed" :writable :addition)
-  (status-fluent nil (or null fluent) "the fluent whose value is the task's status, or NIL: see
-TASK-STATUS" :writable :export)
   (parent nil (or null task)
           "the task around the task, or NIL" :writable :addition)
-  (suspensions 0 fixnum "the number of the task's blocks that are suspensions" :writable)
-  (suspended nil boolean "true if SUSPEND has suspended the task" :writable)
-  (uncounted-p nil boolean "the task's steps are not charged, because WITH-CHARGE has a fixed
-price" :writable :export)
-  (gate nil t "the gate that keeps the task from starting, or NIL" :writable)
-  (variables '() list "the task variables that the task has set, an alist" :writable)
+  (extras nil (or null structure-object) "what few tasks need, or NIL: see extras.lisp" :writable)
   (newest-child nil (or null task) "the newest part of the task that is not over, or
 NIL" :writable :export)
   (older nil (or null task)
          "the next older part of the same parent task, or NIL" :writable :export)
   (newer nil (or null task) :writable))
 (declaim-final frame task)
+
+(defun task-runner (task)
+  "Return the plan runner of TASK. Return NIL if TASK has not started."
+  (let ((agent (task-agent task)))
+    (and agent (agent-runner agent))))
+
+(declaim (inline %task-runner))
+(defun %task-runner (task)
+  "Return the plan runner of TASK, which has started."
+  (agent-runner (the agent (task-agent task))))
 
 (defmethod copy-plan-value ((task task) fork)
   (if (and (task-runner task) (not (home-forked-p (task-runner task) fork)))
@@ -114,6 +113,12 @@ NIL" :writable :export)
 (defun task-over-p (task)
   "True if TASK has succeeded, failed or evaporated."
   (member (task-state task) '(:succeeded :failed :evaporated)))
+
+(addition task-result)
+(defun task-result (task)
+  "Return the value of TASK if it succeeded, its failure if it failed, and NIL otherwise."
+  (check-argument task-result task (task-p task) "a task, as begin-plan returns")
+  (and (task-over-p task) (task-value task)))
 
 (addition task-children)
 (defun task-children (task)

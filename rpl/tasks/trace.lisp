@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(awaited-text agent-text answer-p trace-so-far))
+(export '(awaited-text asker-text answer-p trace-so-far))
 
 (defgeneric awaited-text (awaited)
   (:documentation "Return a text of AWAITED, an object that a task waits for.")
@@ -31,11 +31,11 @@ if TASK does not wait, or waits for its own parts."
 ;;; An entry stores objects; its text is made when it is read.
 
 (define-record (trace-entry (:constructor make-trace-entry
-                                (tick event task form subject value agent)))
+                                (tick event task form subject value asker)))
   "An entry of a trace. At TICK, EVENT happened to the task with the number TASK, at the expression
-FORM. If TASK is 0, EVENT happened to no task. AGENT, the cause of the event, is the number of a
-task, an ANSWER, or another asker (see *ASKER*). The event decides what SUBJECT and VALUE are:
-  :start: the name, and the number of the parent
+FORM. If TASK is 0, EVENT happened to no task. ASKER, the cause of the event, is the number of a
+task, an ANSWER, or another value of *ASKER*. The event decides what SUBJECT and VALUE are:
+  :start: the name, and the number of the parent; of a plan, the name of its robot or NIL
   :wait and :wake: the object that the task waits for
   :succeed: NIL and the value
   :failure (a failure happens) and :fail (a failure ends the task): the failure
@@ -52,8 +52,9 @@ task, an ANSWER, or another asker (see *ASKER*). The event decides what SUBJECT 
   (subject nil t "the object that the event is about; its type depends on the event" :export)
   (value nil t "a value that depends on the event: the value of a task that succeeded; the new value
 of a fluent; the error code of an answer; for a command, the expressions in progress, a list for the
-task and each task around it; at the start of a task, the number of its parent" :addition)
-  (agent nil t "the cause of the event: a task's number, an answer, or an asker" :export))
+task and each task around it; at the start of a task, the number of its parent; at the start of a
+plan, the name of its robot if the run has several robots" :addition)
+  (asker nil t "the cause of the event: a task's number, or another value of *ASKER*" :export))
 (declaim-final trace-entry)
 
 (define-record (issue (:constructor make-issue (name arguments task)))
@@ -82,11 +83,11 @@ task and each task around it; at the start of a task, the number of its parent" 
 (defmethod asker-note ((answer answer))
   (list "the answer to " (issue-text (answer-issue answer))))
 
-(defun agent-text (agent)
-  "Return a text of AGENT, the agent of a trace entry."
-  (if (integerp agent)
-      (format nil "task ~D" agent)
-      (cut (one-line (asker-note-text (if agent (asker-note agent) "a program or the REPL"))) 100)))
+(defun asker-text (asker)
+  "Return a text of ASKER, the asker of a trace entry."
+  (if (integerp asker)
+      (format nil "task ~D" asker)
+      (cut (one-line (asker-note-text (if asker (asker-note asker) "a program or the REPL"))) 100)))
 
 (defun subject-text (subject)
   (cond ((null subject) nil)
@@ -103,7 +104,7 @@ a fluent got and from whom, which command was issued, or how a command was answe
       ((:wait :wake) (subject-text subject))
       ((:failure :fail) (failure-text subject))
       ((:set :pulse) (format nil "~A = ~A, by ~A" (awaited-text subject) (form-text value 40)
-                             (agent-text (trace-entry-agent entry))))
+                             (asker-text (trace-entry-asker entry))))
       (:command (issue-text subject))
       (:answer (format nil "~A: ~(~A~)" (issue-text subject) (or value "done"))))))
 
@@ -140,7 +141,7 @@ each (chunk fill), newest first."
         (chronicle-fill trace) 0))
 
 (defun add-trace-entry (trace tick event task form subject value)
-  "Record in the chronicle TRACE that EVENT happened to task number TASK. The agent is *ASKER*."
+  "Record in the chronicle TRACE that EVENT happened to task number TASK. The asker is *ASKER*."
   (declare #.*hot* (type chronicle trace))
   (when (> (+ 7 (chronicle-fill trace)) (length (chronicle-chunk trace))) (begin-chunk trace))
   (let ((chunk (chronicle-chunk trace)) (fill (chronicle-fill trace)) (asker *asker*))

@@ -4,13 +4,13 @@
 
 (export '(note-command note-event start-trace stop-trace with-answer note-event))
 
-;;; *ASKER* is the agent of an event: the task at work, or the caller whose post is applied.
+;;; *ASKER* is the cause of an event: the task at work, or the caller whose post is applied.
 
 (defmacro note-event (task event &optional subject value)
   "If there is a trace, record in the trace that EVENT happened to TASK. SUBJECT and VALUE are as in
 TRACE-ENTRY; without a trace, they are not evaluated."
   (once-only (task)
-    `(when (runner-trace (the plan-runner (task-runner ,task)))
+    `(when (runner-trace (the plan-runner (%task-runner ,task)))
        (trace-task ,task ,event ,subject ,value))))
 
 ;; Most frames that are noted have not begun: then one need not ask the node.
@@ -23,7 +23,7 @@ TRACE-ENTRY; without a trace, they are not evaluated."
 
 (defun trace-task (task event subject value)
   (declare #.*hot* (type task task))    ; 40 ns
-  (let ((runner (task-runner task)))
+  (let ((runner (%task-runner task)))
     (declare (type plan-runner runner))
     (add-trace-entry (runner-trace runner) (runner-tick runner) event (task-serial task)
                      (task-current-form task) subject value)))

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(*calling-task* install-task-variable make-task-bindings task-variable task-variable-p))
+(export '(*calling-task* calling-task install-task-variable make-task-bindings task-variable
+          task-variable-p))
 
 ;;; All tasks share the thread and its special variables. A task variable is sought from the calling
 ;;; task outwards: in its frames (those that bind variables have TASK-BINDINGS as DATA), in what it

@@ -9,7 +9,7 @@ are written with package prefixes. Manual B.")
   (:shadowing-import-from :ars-magna.world #:map)
   (:import-from :ars-magna.rpl-robot
                 #:*trace-plans* #:plans
-                #:holding-plans-p #:interface-p #:interface-runner #:interface-robot
+                #:holding-plans-p #:interface-p #:interface-runner
                 #:interface-simulation)
   (:import-from :ars-magna.rpl
                 #:bar #:bar-serial #:bars #:image-of-tasks #:runner-change-mark #:runner-trace

@@ -56,13 +56,15 @@ first digit of the default, or the second digit if the first is 1. Ticks change 
 (defun next-value (parameter value direction)
   "Return the value one step from VALUE of PARAMETER, up if DIRECTION is 1 and down if it is -1.
 Return NIL if VALUE is at the limit of PARAMETER. T is one step up from NIL."
-  (if (eq 'boolean (parameter-type parameter))
-      (and (eq (plusp direction) (not value)) (list (plusp direction)))
-      (destructuring-bind (&optional least most) (rest (parameter-type parameter))
-        (let* ((step (step-size parameter))
-               (next (clamp (* step (+ direction (round (rational value) step)))
-                            (or least (- +largest+)) (or most +largest+))))
-          (and (plusp (* direction (- next (rational value)))) (list next))))))
+  (cond ((eq 'boolean (parameter-type parameter))
+         (and (eq (plusp direction) (not value)) (list (plusp direction))))
+        ;; One that need not be a number is only typed.
+        ((not (realp (parameter-default parameter))) nil)
+        (t (destructuring-bind (&optional least most) (rest (parameter-type parameter))
+             (let* ((step (step-size parameter))
+                    (next (clamp (* step (+ direction (round (rational value) step)))
+                                 (or least (- +largest+)) (or most +largest+))))
+               (and (plusp (* direction (- next (rational value)))) (list next)))))))
 
 ;;; Lines.
 

@@ -97,8 +97,8 @@ reactions. Return the value of FUNCTION, or :BUSY if the plans do not come to re
 (defun update-plan-image (look interface)
   "Store in LOOK the tree or timeline of the plans of INTERFACE, or NIL if INTERFACE is NIL. Return
 NIL if the plans are busy."
-  (setf (plan-look-robot look) (and interface (interface-robot interface)
-                                    (robot-name (interface-robot interface)))
+  (setf (plan-look-robot look) (and interface (participant-robot interface)
+                                    (robot-name (participant-robot interface)))
         (plan-look-traced-p look) (plans-traced-p interface))
   (cond ((null interface)
          (setf (plan-look-tree look) nil (plan-look-page look) nil)

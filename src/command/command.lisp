@@ -27,7 +27,8 @@
   (prompt-name "" string "the name of the command at the prompt, in upper case" :addition)
   (prefix "" string "the word that the command's messages begin with" :addition)
   (origin "" string "the name for the command's continuations in messages")
-  (family nil symbol ":MOVING, :LOOKING, :HANDLING, :MANIPULATING or :THINKING" :addition)
+  (family nil symbol ":MOVING, :LOOKING, :HANDLING, :MANIPULATING, :THINKING
+or :MESSAGES" :addition)
   (section nil (or null string)
            "the section of the manual that describes the command, or NIL" :addition)
   (documentation "" string "the sentence that says what the command does" :addition)
@@ -35,6 +36,8 @@
             "the specification of the command's first argument, its resource" :addition)
   (occupies nil (or null symbol)
             "a function that maps the resource to what the command occupies instead, or NIL")
+  (checker nil (or null symbol)
+           "a function that checks the arguments further and returns those to keep, or NIL")
   (parameters '() list
               "the argument specifications, without resource and continuation" :addition)
   (results '() list "the specifications of the further arguments of the continuation" :addition)

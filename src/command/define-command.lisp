@@ -95,7 +95,8 @@ arguments and could itself be the continuation. False if the value is known to b
                       returns no continuation. Write (continuation (err &rest results) ~:*~S)."
                         name (abridged form)))))
 
-(defparameter *command-families* '(:moving :looking :handling :manipulating :thinking)
+(defparameter *command-families* '(:moving :looking :handling :manipulating :thinking
+                                   :messages)
   "The families of commands.")
 
 (defun check-command-form (name resource parameters results options)
@@ -111,7 +112,7 @@ arguments and could itself be the continuation. False if the value is known to b
       (check (and (proper-list-p result) (= 2 (length result)) (stringp (second result))) result
              "(name \"description\")"))
     (loop with keys = '(:family :section :delay :errors :expected :report :echo :prompt :prefix
-                        :occupies :traits)
+                        :occupies :arguments :traits)
           for option in options
           do (check (and (consp option) (member (first option) keys)) option
                     (format nil "~{(~(~S~) ...)~#[~; or ~:;, ~]~}" keys)))
@@ -154,6 +155,8 @@ OPERATION is bound in BODY to the operation. RESOURCE is (variable type), each o
                                        the beginning of messages, by default the command's name
   (:occupies function)                 the name of a function of the resource that returns what the
                                        command occupies instead, such as the robot's mind
+  (:arguments function)                the name of a function of the resource and the arguments that
+                                       checks them further and returns a list of those to keep
   (:traits keyword...)                 properties for warnings and plans: :DRIVES if the command
                                        moves the robot even in one tick; :TURNS if it turns its
                                        resource by a relative angle; :STOPS if it stops its
@@ -180,6 +183,7 @@ BODY runs in a tick. OPERATION must end with SUCCEED or FAIL-WITH, now or later 
          :documentation ,sentence
          :resource ,(spec-form resource)
          :occupies ',(first (option-arguments :occupies options))
+         :checker ',(first (option-arguments :arguments options))
          :parameters (list ,@(mapcar #'spec-form parameters))
          :results (list ,@(loop for (result text) in results
                                 collect (spec-form (list result t text))))

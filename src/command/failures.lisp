@@ -48,9 +48,6 @@ number of the next tick, because a tick is counted after its requests are perfor
 (defmethod request-name ((operation operation))
   (command-name (operation-command operation)))
 
-(defun robot-mind-or-nil (resource)
-  (and (robot-p resource) (robot-mind resource)))
-
 (defun current-request (resource)
   "Return the request that RESOURCE, a robot or part, carries out, or NIL. A track counts only if
 the camera carries out nothing else."
@@ -58,12 +55,13 @@ the camera carries out nothing else."
         (track (and (camera-p resource) (camera-tracking resource))))
     (cond ((typep event 'request) event)
           (track (track-operation track))
-          ((robot-mind-or-nil resource) (current-request (robot-mind-or-nil resource))))))
+          (t (some #'current-request (inner-resources resource))))))
 
 (defun newest-interruption-record (resource)
-  "Return the last interruption of a command of RESOURCE or, for a robot, of its mind; or NIL."
-  (first (stable-sort (loop for each in (list resource (robot-mind-or-nil resource))
-                            when (and each (resource-interruption each)) collect it)
+  "Return the last interruption of a command of RESOURCE or, for a robot, of its mind or radio;
+or NIL."
+  (first (stable-sort (loop for each in (cons resource (inner-resources resource))
+                            when (resource-interruption each) collect it)
                       #'> :key #'interruption-tick)))
 
 (defun check-resource (operator resource)
@@ -75,7 +73,8 @@ the camera carries out nothing else."
   "Return two values: the name of the command that RESOURCE, a robot or part, executes or is about
 to begin; and who issued the command, a string such as \"the prompt\", \"the plan fetch\", \"the
 continuation of robot-turn\" or \"Lisp (main thread)\". A camera that only tracks executes
-CAMERA-TRACK, and a robot that only thinks executes THINK. Return NIL if RESOURCE executes no
+CAMERA-TRACK, and a robot that only thinks or sends executes THINK or
+ROBOT-SEND. Return NIL if RESOURCE executes no
 command. A newer command always interrupts an older command."
   (check-resource 'under-way resource)
   (let ((occupant (current-request resource)))
@@ -86,7 +85,8 @@ command. A newer command always interrupts an older command."
 (defun last-interruption (resource)
   "Return the last interruption of a command of RESOURCE, a robot or a part, or NIL: a list (what
 asker by-what by-asker tick) with the names of the interrupted and the interrupting command, each
-with a string that says who issued it, and the tick. THINK counts as a command of the robot."
+with a string that says who issued it, and the tick. THINK and ROBOT-SEND count as commands of
+the robot."
   (check-resource 'last-interruption resource)
   (let ((interruption (newest-interruption-record resource)))
     (when interruption

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.command)
 
-(export '(issue *caller-passes-ticks-p* between-runs-p *recorded-bindings* rebound-parameters
-          warn-of-recorded-bindings requested-by-other-run-p))
+(export '(occupied-resource issue *caller-passes-ticks-p* between-runs-p *recorded-bindings*
+          rebound-parameters warn-of-recorded-bindings requested-by-other-run-p))
 
 ;;; Arguments from another run.
 
@@ -119,8 +119,9 @@ position. TOLD lists the names of the arguments."
 (defun may-replace-p (command resource arguments before)
   "True if COMMAND may be meant to replace BEFORE, an operation of the same command: RESOURCE is a
 part, ARGUMENTS are empty or differ from those of BEFORE, or the world is a resident world, where
-BEFORE may be left over from earlier work."
+BEFORE may be left over from earlier work. No message replaces another."
   (and (eq command (operation-command before))
+       (not (radio-p resource))
        (not (and (robot-p resource)
                  arguments
                  (equal arguments (operation-arguments before))
@@ -282,22 +283,30 @@ plans, because running a plan passes ticks."
 ;;; Issuing.
 
 (defun occupied-resource (command resource)
+  "Return what COMMAND on RESOURCE occupies: RESOURCE, or a part of it, such as the robot's radio."
   (let ((reader (command-occupies command)))
     (if reader (funcall reader resource) resource)))
 
+(defun arguments-to-issue (command resource arguments)
+  "Return ARGUMENTS of COMMAND on RESOURCE with their lists and vectors copied, and checked by the
+function that COMMAND names for this."
+  (let ((arguments (if (some (lambda (argument) (typep argument '(or cons vector))) arguments)
+                       (copy-argument (command-name command) "arguments" arguments)
+                       arguments))
+        (checker (command-checker command)))
+    (if checker (apply checker resource arguments) arguments)))
+
 (defun issue (command resource arguments continuation)
-  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked. Copy the lists in ARGUMENTS.
-CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick. Signals MISUSE
-if the robot's run is over, or if an argument belongs to another run or another robot."
+  "Issue COMMAND on RESOURCE with ARGUMENTS, which have been checked. Copy lists and vectors in
+ARGUMENTS. CONTINUATION may be NIL. Return nothing: the command takes effect in the next tick.
+Signals MISUSE if the run is over, or if an argument belongs to another run or another robot."
   (check-not-retired resource (command-name command))
   (check-same-run command resource arguments)
   (check-own-arguments command resource arguments)
   (let* ((robot (resource-robot resource))
          (world (robot-world robot))
          (timeline (world-timeline world))
-         (arguments (if (some #'consp arguments)
-                        (copy-argument (command-name command) "arguments" arguments)
-                        arguments)))
+         (arguments (arguments-to-issue command resource arguments)))
     (count-request (occupied-resource command resource))
     (warn-if-interrupting command (occupied-resource command resource) arguments timeline)
     (warn-if-repeating command (occupied-resource command resource) arguments timeline)

@@ -62,9 +62,10 @@ the command that it has interrupted, or NIL"))
   (timeline-agenda (the timeline (operation-timeline operation))))
 
 (defun resource-for-users (operation)
-  "Return the resource of OPERATION as programs and journals name it: the robot, not its mind."
+  "Return the resource of OPERATION as programs and journals name it: the robot, not its mind
+or radio."
   (let ((resource (operation-resource operation)))
-    (if (mind-p resource) (mind-robot resource) resource)))
+    (if (inner-resource-p resource) (inner-resource-robot resource) resource)))
 
 (defun operation-world (operation)
   (robot-world (resource-robot (operation-resource operation))))
@@ -287,5 +288,5 @@ RIVAL if it takes no time, such as a ROBOT-SET-SPEED just before a ROBOT-GO-FORW
 
 (defun resource-robot (resource)
   (cond ((robot-p resource) resource)
-        ((mind-p resource) (mind-robot resource))
+        ((inner-resource-p resource) (inner-resource-robot resource))
         (t (part-robot resource))))

@@ -46,7 +46,8 @@
   (run (funcall *get-reporting-run*) t "the run that the message belongs to, or NIL" :export)
   (cause nil t "the reported condition or failure in users' code, or NIL (troubles.lisp)" :export)
   (summary "" string "a text about the cause, on one line")
-  (about nil (or null symbol) "the name of the command whose failure the message reports, or NIL")
+  (about nil (or null symbol)
+         "the name of the command whose failure the message reports, or NIL" :export)
   (told-p nil boolean "users' code has also received what the message reports" :export)
   ;; Or a function that returns it later; or :AT-ONCE for a message that is shown at once if there
   ;; is no listener, because the run may never end.

@@ -55,6 +55,8 @@
                    (eq (first type) 'integer)
                    (and (second type) (limit-text (second type)))
                    (and (third type) (limit-text (third type)))))
+          ((typep type '(cons (eql or) (cons (eql null) (cons t null))))
+           (format nil "NIL or ~A" (describe-type (third type))))
           (t (format nil "a value of type ~(~S~)" type)))))
 
 ;; As numbers have two limits each, so do the types: (real 0 1).
@@ -253,6 +255,18 @@ designators of things, but no parameter for them." :addition :digested)
       "The chance that something in a storage bin keeps it from closing.")
      (bin-delay* 2 "ticks" :delay (integer 0 #.+largest+)
       "How long opening or closing a storage bin takes."))
+    ("Radio"
+     (radio-range* nil "metres" :limit (or null (real 0 #.+largest+))
+      "How far apart two robots may be when one sends the other a message. NIL means any distance."
+      :addition t)
+     (radio-delay* 1 "ticks" :delay (integer 0 #.+largest+)
+      "How long after it was sent a message arrives, at least 1 tick." :addition t)
+     (prob-lose-message* 0d0 "probability" :noise (real 0 1)
+      "The chance, for each receiver, that a message does not arrive." :addition t)
+     (prob-garble-message* 0d0 "probability" :noise (real 0 1)
+      "The chance, for each receiver, that a message that arrives is :GARBLED." :addition t)
+     (mailbox-size* 100 "messages" :limit (integer 1 10000)
+      "How many messages a robot's mailbox holds. A message more drops the oldest." :addition t))
     ("Time"
      (tick-quantum* 1 "ticks" :setting (real 1 1000000)
       "How many of the manual's ticks one tick represents. Motion, drift and chances per tick are

@@ -8,7 +8,7 @@
 ;;; A journal records requests, not their results. So it is replayed. After each tick a watcher
 ;;; compares what each robot holds and has in its bins, and what failed last, with the tick before.
 
-(define-constant +moment-kinds+ '(:grasp :release :stow :failure :plan :part :error :note)
+(define-constant +moment-kinds+ '(:grasp :release :stow :failure :message :plan :part :error :note)
   :test #'cl:equal
   :documentation "The kinds of moments, which are notable events of a run.")
 
@@ -16,7 +16,8 @@
 (define-record (moment (:constructor make-moment (tick kind text &optional x y robot code)))
   "A notable event of a run. TEXT says what happened at TICK to the robot named ROBOT at X, Y."
   (tick 0 real "the tick of the event" :addition)
-  (kind :note symbol "the kind of the event: :GRASP, :RELEASE, :STOW; :FAILURE of a command; :PLAN
+  (kind :note symbol "the kind of the event: :GRASP, :RELEASE, :STOW; :FAILURE of a command;
+:MESSAGE that arrived; :PLAN
 that failed or was ended; :PART of a plan that failed or was ended, even if the plan continued;
 :ERROR in users' code; :NOTE of a user" :addition)
   (text "" string "a short description of the event" :addition)
@@ -67,8 +68,14 @@ the contents of each bin. FAILURE is the last failure of a command."
       (when (failure-code-p error)
         (list (list :failure (format nil "~(~A~): ~A" command text) error))))))
 
+(defun new-messages (robot tick)
+  "Return lists (kind text) for the messages that arrived at ROBOT in TICK."
+  (loop for (message sender) in (last-arrivals robot tick)
+        collect (list :message (format nil "heard ~A from ~(~A~)" (safe-text message) sender))))
+
 (defun moments-between (old new robot tick)
   (loop for (kind text code) in (append (changes-of-hands old new) (changes-of-bins old new)
+                                        (new-messages robot tick)
                                         (new-command-failure old new robot))
         collect (make-moment tick kind text (robot-x robot) (robot-y robot) (robot-name robot)
                              code)))
@@ -124,12 +131,15 @@ of them are moments, or lists (tick text [robot]), up to the tick END."
   (unless (or (eq kinds t)
               (and (proper-list-p kinds) (subsetp kinds +moment-kinds+)))
     (reject-argument operator :kinds kinds
-                     (format nil "T for all, or a list of some of ~{~(~S~)~^, ~}" +moment-kinds+))))
+                     (format nil "T for all except messages, or a list of some of ~
+                                  ~{~(~S~)~^, ~}"
+                             +moment-kinds+))))
 
 (defun moments-of-kinds (kinds moments)
-  "Return those of MOMENTS whose kind is :NOTE or in the list KINDS. If KINDS is T, return all."
+  "Return those of MOMENTS whose kind is :NOTE or in the list KINDS. If KINDS is T, return all
+except messages."
   (if (eq kinds t)
-      moments
+      (remove :message moments :key #'moment-kind)
       (remove-if-not (lambda (moment) (member (moment-kind moment) (cons :note kinds))) moments)))
 
 (defun sort-moments (moments)

@@ -156,7 +156,8 @@ so; else NIL."
 
 (defmethod resource-key ((robot robot)) (robot-key robot))
 (defmethod resource-key ((part part)) (robot-key (part-robot part)))
-(defmethod resource-key ((mind mind)) (robot-key (mind-robot mind)))
+(defmethod resource-key ((resource inner-resource))
+  (robot-key (inner-resource-robot resource)))
 
 (defun turn-salt (world tick)
   "Return a number that determines the order of the robots of WORLD in TICK."

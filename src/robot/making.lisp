@@ -98,6 +98,7 @@ or outside the map (reading 215)."
   (let ((robot (%make-robot :name name :blueprint blueprint :world world :start start)))
     (ensure-timeline world)
     (setf (robot-mind robot) (make-mind :robot robot)
+          (robot-radio robot) (make-radio :robot robot)
           (robot-parts robot) (make-parts robot (blueprint-parts blueprint)))
     (put-at-start robot)
     (setf (world-robots world) (append (world-robots world) (list robot)))

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(all-blueprints blueprint *robots* find-blueprint robot-resources mind-p
+(export '(all-blueprints blueprint *robots* find-blueprint robot-resources
+          inner-resource-p inner-resource-robot inner-resources radio-p
           *part-vectors* parts-of-kind part mark-world-unsettled ensure-timeline))
 
 ;;; A blueprint does not change after DEFROBOT has registered it. Any number of robots can be made
@@ -33,10 +34,24 @@
 ;;; The robot and each part is a resource: it does one thing at a time. A part's LOCATION is NIL
 ;;; (with the robot), a container among the things, or a storage bin.
 
-(define-kind (mind :include resource)
-    "The resource that THINK occupies, so that body and parts continue while a robot thinks."
+(define-kind (inner-resource :include resource :constructor nil)
+    "A resource of a robot that is not one of its parts."
   (:fixed
-   (robot nil t "the robot whose mind it is" :export)))
+   (robot nil t "the robot that the resource belongs to" :export)))
+
+(define-kind (mind :include inner-resource)
+    "The resource that THINK occupies, so that body and parts continue while a robot thinks.")
+
+(define-kind (radio :include inner-resource)
+    "The resource that ROBOT-SEND occupies, with the mailbox of the robot; see messages.lisp."
+  (:state
+   (sent 0 (unsigned-byte 60) "how many messages the robot has sent" :export)
+   (mailbox '() list "the messages that have arrived and were not taken, the oldest first: lists
+(message sender tick)" :shared :export)
+   (dropped 0 (unsigned-byte 60) "how many messages the full mailbox has dropped" :export))
+  (:memory
+   (last-arrivals '() list "the last tick in which messages arrived, followed by these messages, the
+newest first" :shared :export)))
 
 (public robot)
 ;; See reading 92.
@@ -52,6 +67,7 @@
    (bins #() simple-vector "the vector of the robot's storage bins" :part :addition)
    (sensors #() simple-vector "the vector of the robot's parts of other kinds" :part :addition)
    (mind nil (or null mind) "the resource that THINK occupies" :part :export)
+   (radio nil (or null radio) "the resource that ROBOT-SEND occupies" :part :export)
    (body nil (or null body)
          "the robot's body in a world with several robots; NIL if the robot is alone or a ghost"
          :addition)
@@ -206,8 +222,8 @@ the robot, and its views have RESOLUTION pixels (manual 3.4)."
 (defmethod timeline-of ((part part))
   (timeline-of (part-robot part)))
 
-(defmethod timeline-of ((mind mind))
-  (timeline-of (mind-robot mind)))
+(defmethod timeline-of ((resource inner-resource))
+  (timeline-of (inner-resource-robot resource)))
 
 (addition robot-position)
 (defun robot-position (robot)
@@ -239,9 +255,13 @@ the first vector whose element type fits.")
                  robot)
         (setf parts (remove-if #'here-p parts))))))
 
+(defun inner-resources (resource)
+  "Return a list of the mind and the radio of RESOURCE if RESOURCE is a robot; or NIL."
+  (and (robot-p resource) (list (robot-mind resource) (robot-radio resource))))
+
 (defun robot-resources (robot)
-  "Return a list of ROBOT's resources: robot, parts and mind. Each does one thing at a time."
-  (append (list robot) (robot-parts robot) (list (robot-mind robot))))
+  "Return a list of ROBOT's resources: robot, parts, mind and radio. Each does one thing at a time."
+  (append (list robot) (robot-parts robot) (inner-resources robot)))
 
 (defun mark-world-unsettled (robot)
   "Make the next tick check the world of ROBOT. Call MARK-WORLD-UNSETTLED before creating anything
@@ -296,8 +316,9 @@ the parts of this kind, from 0. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
 (defmethod print-object ((robot robot) stream)
   (print-named robot stream (robot-label robot)))
 
-(defmethod print-object ((mind mind) stream)
-  (print-named mind stream (format nil "Mind of ~A" (mind-robot mind))))
+(defmethod print-object ((resource inner-resource) stream)
+  (print-named resource stream
+               (format nil "~@(~A~) of ~A" (type-of resource) (inner-resource-robot resource))))
 
 (defmethod print-object ((part part) stream)
   (print-named part stream (format nil "~@(~A~) ~D" (type-of part) (part-index part))))

@@ -96,6 +96,20 @@
                            0)))
                "~A has a body or dice although it is alone, or has none although it is not" robot)))
 
+;; Files of earlier versions have no radios.
+(defun check-radio (robot)
+  (unless (robot-radio robot) (setf (robot-radio robot) (make-radio :robot robot)))
+  (let ((radio (robot-radio robot)))
+    (must-hold (eq robot (inner-resource-robot radio)) "the radio of ~A is another robot's" robot)
+    (must-hold (proper-list-of-p (lambda (entry)
+                                   (and (typep entry '(cons t (cons symbol (cons tick-count null))))
+                                        (message-datum-p (first entry))))
+                                 (radio-mailbox radio))
+               "the mailbox of ~A is invalid" robot)
+    (must-hold (proper-list-of-p #'identity (radio-last-arrivals radio))
+               "the last messages of ~A are invalid" robot)
+    (check-pending-event radio)))
+
 (defun check-start-pose (robot world)
   (let ((start (robot-start robot)))
     (must-hold (or (null start)
@@ -127,5 +141,6 @@ robot of WORLD in a state that a run can reach."
   (loop for bin across (robot-bins robot)
         do (check-contents bin (storage-bin-contents bin) (world-live-count world)))
   (check-body robot)
+  (check-radio robot)
   (check-designators robot)
   (check-odometers robot))

@@ -6,7 +6,7 @@
 
 ;;; A journal is used after its run, so robots, parts and things are written in it as (:the KIND
 ;;; ARGUMENT...), with a name, index or serial number. Lists that begin with :THE are written as
-;;; (:the :list ...), dotted lists as (:the :list* ...).
+;;; (:the :list ...), dotted lists as (:the :list* ...). So are characters and simple vectors.
 
 (defun nameable-p (object)
   "True if OBJECT has a type whose objects DEREFERENCE can find by a reference."
@@ -27,6 +27,8 @@
     (string (copy-seq tree))
     ((or number symbol function) tree)
     (cons (externalize-list tree))
+    (character (list :the :character (char-code tree)))
+    (simple-vector (list* :the :vector (cl:map 'list #'externalize-tree tree)))
     (t (let ((reference (and (nameable-p tree) (reference tree))))
          (if reference
              (list* :the (first reference) (mapcar #'externalize-tree (rest reference)))
@@ -79,6 +81,12 @@ SIMULATION to the simulation."
 
 (define-dereference :list* (first &rest elements)
   (append (list first) (butlast elements) (first (last elements))))
+
+(define-dereference :vector (&rest elements)
+  (coerce elements 'simple-vector))
+
+(define-dereference :character (code)
+  (code-char code))
 
 (defun robot-in (simulation name)
   "Return the robot in SIMULATION that NAME, the name in a reference, means."

@@ -85,17 +85,17 @@ of each number, or NIL for an external object."
                   (kind-slot-reader field) (kind-slot-writer field)))
 
 (defparameter *newer-slots*
-  '((ars-magna.world:world "GHOSTS-P" "DICE-NAMES" "ROSTER")
+  '((ars-magna.robot:robot "RADIO")
+    (ars-magna.world:world "GHOSTS-P" "DICE-NAMES" "ROSTER")
     (ars-magna.world:stock "BODIES")
     (ars-magna.robot:robot "BODY" "DICE-BASE" "KEY" "START"))
-  "Slots that versions before 1.11 did not save, as lists (type name...). Runs with one robot do not
-need them.")
+  "Slots that earlier versions did not save, as lists (type name...), the newest first. Version 1.10
+saved none of them; runs with one robot do not need them. Radios are made when a run is loaded.")
 
-(defun without-newer-slots (fields type)
-  "Return FIELDS of structures of TYPE as they were in version 1.10."
-  (loop with newer = (rest (assoc type *newer-slots*))
-        for field in fields
-        collect (if (member (kind-slot-name field) newer :test #'string=)
+(defun without-slots (names fields)
+  "Return FIELDS with the slots that have NAMES marked as not saved."
+  (loop for field in fields
+        collect (if (member (kind-slot-name field) names :test #'string=)
                     (as-unsaved-slot field)
                     field)))
 
@@ -109,14 +109,13 @@ need them.")
                (typep (find-class type nil) 'structure-class)
                (savable-structure-type-p type))
     (error "the file has objects of a kind that is not loaded, ~A" (short-text type)))
-  (let* ((fields (fields-of-type type)) (older (without-newer-slots fields type)))
-    (unless (equal names (names-of-saved-slots fields))
-      (when (equal names (names-of-saved-slots older))
-        (return-from saved-slots older))
-      (error "its objects of the kind ~(~A~) have other slots than the kind that is loaded; ~
-              another version of the simulator, or of the kind, saved the file"
-             type))
-    fields))
+  (loop with fields = (fields-of-type type)
+        for (nil . newer) in (cons '() (remove type *newer-slots* :key #'first :test-not #'eq))
+        do (setf fields (without-slots newer fields))
+           (when (equal names (names-of-saved-slots fields)) (return fields))
+        finally (error "its objects of the kind ~(~A~) have other slots than the kind that is ~
+                        loaded; another version of the simulator, or of the kind, saved the file"
+                       type)))
 
 (defun check-shape (shape)
   "Signal an error unless SHAPE, read from a file, is valid."

@@ -205,9 +205,9 @@ last tick, by default the end of JOURNAL.
 
 The picture shows these events: a robot grasps, releases or stows a thing; a command fails; a plan
 or a part of a plan fails or is ended; an error occurs in your code. KINDS is a list of the kinds of
-events to show, from :GRASP, :RELEASE, :STOW, :FAILURE, :PLAN, :PART, :ERROR and :NOTE. MOMENTS are
-events of your own, which are always shown: moments, or lists of a tick, a string and, optionally,
-the name of a robot of the run.
+events to show, from :GRASP, :RELEASE, :STOW, :FAILURE, :MESSAGE that arrived, :PLAN, :PART, :ERROR
+and :NOTE; by default all except :MESSAGE. MOMENTS are events of your own, which are always shown:
+moments, or lists of a tick, a string and, optionally, the name of a robot of the run.
 
 LIMIT is the largest number of lines below the map, but your own events are always listed. If LIMIT
 is NIL, all events are listed with all ticks. Events that do not fit are left out and counted, the

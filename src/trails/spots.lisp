@@ -69,6 +69,7 @@ MOST ticks, or with all ticks if MOST is NIL."
 (defparameter *moment-kind-nouns*
   '((:grasp "grasp" "grasps") (:release "letting go" "times of letting go")
     (:stow "thing stowed" "things stowed") (:failure "failure of a command" "failures of commands")
+    (:message "message" "messages")
     (:plan "plan that failed or was ended" "plans that failed or were ended")
     (:part "failure or end within a plan" "failures or ends within plans")
     (:error "error in your code" "errors in your code") (:note "note of yours" "notes of yours"))

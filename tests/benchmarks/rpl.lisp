@@ -51,7 +51,7 @@
     (sb-ext:gc :full t)
     (let ((before (ars-magna.host:dynamic-usage)))
       (start-plan runner 'many-waiters items)
-      (react runner)
+      (react-to-all runner)
       (sb-ext:gc :full t)
       (prog1 (/ (- (ars-magna.host:dynamic-usage) before) count)
         (stop-plan runner)))))
@@ -132,7 +132,7 @@
   (let* ((source (create-fluent 'source 0))
          (runner (make-plan-runner)))
     (start-plan runner 'watch-chain source depth)
-    (react runner)
+    (react-to-all runner)
     (per-second count (lambda () (dotimes (i count) (set-value source i))))))
 
 (say "updates of a fluent under a network 10 deep" (updates-per-second 9 1000000) "per second")
