@@ -94,6 +94,28 @@
     (signals base:unknown-name (driver:begin-plan 'drive-metres 8 :robot 'nobody))
     (signals base:wrong-argument (driver:begin-plan 'drive-metres 8 :robbot 'ben))))
 
+(rpl:def-interp-proc name-by-default (&key (name (robot:robot-name (driver:rpl-robot))))
+  name)
+
+(test arguments.get-default-values-on-the-robot-that-the-plan-drives
+  (with-three ()
+    (is (eq 'ben (driver:run-plan 'name-by-default :robot ben)))
+    (driver:rpl-init-robot ada)
+    (is (eq 'ben (driver:run-plan 'name-by-default :robot ben)))
+    (is (eq 'cyd (driver:run-plan (rpl:interp-lambda ()
+                                    (let ((task (driver:begin-plan 'name-by-default :robot cyd)))
+                                      (rpl:join-task task)))
+                                  :robot ben)))))
+
+(test thinking.is-charged-to-robots-that-plans-first-drive-during-a-reaction
+  (with-three (:thinking :charged)
+    (is (= 5 (driver:run-plan (rpl:interp-lambda ()
+                                (let ((task (driver:begin-plan
+                                             (rpl:interp-lambda () (rpl:think 5) (rpl:plan-time))
+                                             :robot ben)))
+                                  (rpl:join-task task)))
+                              :robot ada)))))
+
 ;;; ON-ROBOT and fluents.
 
 (test on-robot.means-another-robot-for-its-extent

@@ -103,6 +103,9 @@ prompt commands; NIL if several robots are possible."
 (defvar *repeated-driver* nil
   "The driver that code outside of plans means while it is repeated in this thread, or NIL.")
 
+(defvar *begun-driver* nil
+  "While a plan gets default values of its arguments: the driver of the plan. Otherwise NIL.")
+
 (defun default-driver (interface)
   "Return the driver that code outside of plans means, or NIL if there is none yet."
   (let ((driver (or *repeated-driver* (interface-default interface))))
@@ -114,6 +117,7 @@ prompt commands; NIL if several robots are possible."
   "Return the driver that the calling code means, or NIL."
   (let* ((interface (usable-interface)) (task (and interface (calling-task))))
     (cond ((null interface) nil)
+          (*begun-driver*)
           ((and task (eq (task-runner task) (interface-runner interface))) (driver-of-task task))
           (t (default-driver interface)))))
 

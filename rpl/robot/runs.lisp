@@ -69,7 +69,8 @@ the task before anything else can happen."
     (prog1 (with-plans (interface)
              ;; Live, plans may not have reacted for long.
              (note-tick (interface-runner interface) (simulation-tick simulation))
-             (let ((task (apply #'start-plan (driver-agent driver) plan arguments)))
+             (let ((task (let ((*begun-driver* driver))
+                           (apply #'start-plan (driver-agent driver) plan arguments))))
                (funcall note task)
                task))
       (ensure-thread interface)
