@@ -14,7 +14,7 @@
     (libraries 7) (agreement 6) (experiment-shell 4) (tutorial 4) (digests 4) (manual-4 4)
     (inference-coverage 4) (experiments-tables 4) (manual-3-4-3 4) (display 4) (cli-door 4)
     (cli-files 6) (cli-sessions 4) (cli-building 6) (definitions 3) (journals 3) (floors 4)
-    (experiments-series 12) (robot-traffic 10) (robot-crowds 8) (rpl-agents 4))
+    (experiments-series 12) (several-plans 9) (robot-traffic 10) (robot-crowds 8) (rpl-agents 4))
   "How many seconds suites may take: a list of lists (suite seconds).")
 
 (defvar *seconds* (make-hash-table) "How many seconds each suite has taken, in these runs.")

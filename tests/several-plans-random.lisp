@@ -10,7 +10,7 @@
 
 (robot:defrobot abe (heath (5 5) 0))
 (robot:defrobot bea (heath (25 5) 0))
-(robot:defrobot col (heath (45 5) 0))
+(robot:defrobot kit (heath (45 5) 0))
 (robot:defrobot deb (heath (5 35) 0))
 (robot:defrobot eve (heath (45 35) 0))
 
@@ -106,6 +106,8 @@ a sorted list of ENDS and further ends."
   "Run BODY with ROBOTS, a list of names. They turn slowly, so that turns overlap."
   `(let ((*begun* '())
          (base:*message-queue* (base:make-message-queue))
+         (*standard-output* (make-broadcast-stream))
+         (*error-output* (make-broadcast-stream))
          (base:*echo-output* (make-broadcast-stream)))
      (run:with-simulation (,robots :clean t :thinking (if ,charged-p :charged :free) ,@options)
        (dolist (robot (run:simulation-robots)) (command:robot-set-turn-angle robot .05d0))
@@ -168,7 +170,7 @@ Most parts begin with a wait, so that the order within a tick seldom matters."
   "Return a random case: plans of two to five robots and, if KILLS-P is true, their early ends. No
 other robot drives the robot of an INIT."
   (let* ((*next-id* 0)
-         (robots (subseq '(abe bea col deb eve) 0 (+ 2 (base:roll-index 4 dice))))
+         (robots (subseq '(abe bea kit deb eve) 0 (+ 2 (base:roll-index 4 dice))))
          (hermit (and kills-p (base:chance 1/2 dice) (first (last robots))))
          (*robots-to-use* (remove hermit robots))
          (begins (loop for robot in (append robots (when (base:chance 1/3 dice) robots))
@@ -222,10 +224,10 @@ cases the order within a tick matters."
           (when order-matters-p (incf ordered)))))))
 
 (test plans.of-several-robots-end-when-and-how-the-model-says
-  (is (null (troubles-with-random-cases 150 1 nil))))
+  (is (null (troubles-with-random-cases 100 1 nil))))
 
 (test plans.of-several-robots-that-are-ended-end-when-and-how-the-model-says
-  (is (null (troubles-with-random-cases 150 2 t))))
+  (is (null (troubles-with-random-cases 100 2 t))))
 
 ;;; Rewinds and forks at random points.
 
@@ -244,8 +246,9 @@ cases the order within a tick matters."
 within a tick matters, do not try CASE."
   (multiple-value-bind (ends last) (case-by-model case :first)
     (let* ((deeds (case-deeds case))
-           (at (1+ (base:roll-index (1+ last) dice)))
-           (to (base:roll-index at dice))
+           ;; A rewind to tick 0 would undo how slowly the robots turn.
+           (at (+ 2 (base:roll-index (1+ last) dice)))
+           (to (1+ (base:roll-index (1- at) dice)))
            (stops (stops-for ends deeds (+ 30 last)))
            (undisturbed (case-really case stops)))
       (with-robots-of-case ((case-robots case) (case-charged-p case) :keep t)

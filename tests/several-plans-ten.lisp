@@ -71,7 +71,9 @@
 (test ten.a-plan-that-never-waits-delays-no-other
   (flet ((ends (loop-p)
            (run:with-simulation ((ten-robots) :seed 1 :clean t)
-             (with-messages
+             (let ((base:*message-queue* (base:make-message-queue))
+                   (*standard-output* (make-broadcast-stream))
+                   (*error-output* (make-broadcast-stream)))
                (let ((tasks (loop for robot in (rest (run:simulation-robots))
                                   collect (cons (robot-number robot)
                                                 (driver:begin-plan 'roam 2 :robot robot)))))
