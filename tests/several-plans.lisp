@@ -248,7 +248,7 @@
         (is (eq :evaporated (rpl:task-state first)))
         (is (eq 'ram (rpl:task-result second)))))))
 
-;;; What strangers to a driver do to its plans.
+;;; A robot gets a new driver or leaves.
 
 (test init.of-a-robot-lets-on-robot-of-others-go-on
   (with-three ()
@@ -266,6 +266,26 @@
         (run:run-ticks 20)
         (is (not (rpl:task-over-p task)))
         (is (< (+ 2 before) (length log)))))))
+
+(test init.in-a-live-run-lets-on-robot-of-others-go-on-at-once
+  (with-three ()
+    ;; So slow that no command ends by itself.
+    (run:start-clock time:*simulation* :rate 1)
+    (unwind-protect
+         (let* ((driven-p nil)
+                (task (driver:begin-plan
+                       (rpl:interp-lambda ()
+                         (driver:on-robot ('ben)
+                           (driver:rpl-robot-go-forward 30)
+                           (setf driven-p t)
+                           (rpl:wait-for driver:robot-stopped*)
+                           (driver:rpl-robot-turn 1)
+                           :on))
+                       :robot ada)))
+           (awaiting driven-p)
+           (driver:rpl-init-robot ben)
+           (awaiting (eq :on (rpl:task-result task))))
+      (run:stop-clock time:*simulation*))))
 
 (test robots.that-leave-let-on-robot-fail
   (with-own-definitions ()

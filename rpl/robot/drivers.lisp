@@ -242,7 +242,8 @@ function, the plans end as soon as they can."
               (t (end-plans-in-this-thread interface #'driver-closed-p driver)))))))
 
 (defun finish-closing-drivers (interface)
-  "The plans of INTERFACE have reacted. End those of drivers that were closed meanwhile."
+  "The plans of INTERFACE have reacted. End those of drivers that were closed meanwhile. Return true
+if there are any: that may let plans of other robots go on."
   (mapc #'end-plans-of-driver (remove-if-not #'driver-closing-p (interface-drivers interface))))
 
 (defun set-ender (driver)
@@ -261,10 +262,15 @@ are several robots."
                  :plans)))
 
 ;; The owner of the run must never wait for plans, which may be asking it: so these are two steps.
-(defun add-driver (robot interface)
-  "Return a new driver of ROBOT, with new fluents, in INTERFACE."
-  (let ((driver (make-driver interface robot)) (simulation (interface-simulation interface)))
+(defun add-driver (robot interface replace-p)
+  "Return the driver of ROBOT in INTERFACE, which is new, with new fluents, if there was none or if
+REPLACE-P is true. Return as second value an older driver that is to be closed, or NIL."
+  (let ((driver (make-driver interface robot)) (before nil)
+        (simulation (interface-simulation interface)))
     (with-plans (interface)
+      (setf before (find-driver robot interface))
+      ;; Another thread may have been first.
+      (when (and before (not replace-p)) (return-from add-driver before))
       (setf (driver-agent driver)
             (add-agent (interface-runner interface)
                        (make-agent :client driver :dice (dice-of-plans robot simulation)))
@@ -274,4 +280,4 @@ are several robots."
       ;; Plans may be reacting.
       (prepare-agent driver))
     (asking (simulation) (set-ender driver))
-    driver))
+    (values driver before)))

@@ -159,10 +159,14 @@ their steps. Return :IDLE or :BUDGET. The caller holds the plans. Inside of a re
         ;; The parameters of thinking may have changed.
         (mapc #'prepare-agent (interface-drivers interface))
         (advance-timers runner (simulation-tick (interface-simulation interface)))
-        (let ((outcome (react-and-serve interface)))
-          ;; If it was closed while its plans reacted, the rest is done here.
-          (cond ((interface-closing-p interface) (finish-closing interface) :idle)
-                (t (finish-closing-drivers interface) outcome))))))
+        (loop
+          (let ((outcome (react-and-serve interface)))
+            ;; If it was closed while its plans reacted, the rest is done here.
+            (cond ((interface-closing-p interface)
+                   (finish-closing interface)
+                   (return :idle))
+                  ((not (finish-closing-drivers interface))
+                   (return outcome))))))))
 
 (defun finish-closing (interface)
   "Finish the plans of INTERFACE, which no longer react, and mark INTERFACE as closed."

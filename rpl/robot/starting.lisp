@@ -82,19 +82,19 @@ plans of a live run go on while a headless simulation runs inside of the live ru
 ;; A repeated run gives the eras that it had, so that its tasks are recognized.
 (defun drive-robot-with-eras (robot eras default-p)
   "Let plans drive ROBOT, as RPL-INIT-ROBOT does. ERAS are those of a new interface. If DEFAULT-P is
-true, plans drive ROBOT by default. Return the new driver."
+true, end the plans of ROBOT; from now on plans drive ROBOT by default. Return the driver."
   (let ((simulation (robot-simulation robot)))
     (record-outside-act simulation #'call-with-trace *trace-plans* #'drive-robot-with-eras robot
                         eras default-p)
-    (let* ((interface (or (usable-interface) (add-interface simulation eras)))
-           (before (find-driver robot interface)))
-      (when before (close-driver before))
-      (let ((driver (add-driver robot interface)))
+    (let ((interface (or (usable-interface) (add-interface simulation eras))))
+      (multiple-value-bind (driver before) (add-driver robot interface default-p)
         (when default-p (setf (interface-default interface) driver))
+        ;; Now ON-ROBOT in plans of other robots finds the new driver.
+        (when before (close-driver before))
         driver))))
 
 (defun init-robot (robot &optional default-p)
-  "Return a new driver for ROBOT."
+  "Return a driver for ROBOT: a new one if DEFAULT-P is true or if there is none."
   (check-world-to-drive robot)
   (drive-robot-with-eras robot (list (cons (gensym "ERA") 0)) default-p))
 
