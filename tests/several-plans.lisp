@@ -116,6 +116,27 @@
                                   (rpl:join-task task)))
                               :robot ada)))))
 
+(test fluents.first-asked-for-in-several-threads-at-once-are-the-same
+  (loop repeat 50
+        do (with-three ()
+             (let* ((ready (base:make-semaphore "ready")) (simulation time:*simulation*)
+                    (threads (loop repeat 6
+                                   collect (base:start-thread
+                                            (lambda ()
+                                              (base:wait-on-semaphore ready)
+                                              (run:call-with-thread-bindings
+                                               simulation
+                                               (lambda ()
+                                                 (let ((driver::*default-interface* nil))
+                                                   (driver:robot-fluent
+                                                    ada 'driver:robot-stopped*)))))
+                                            "asker"))))
+               (loop repeat 6 do (base:signal-semaphore ready))
+               (is (= 1 (length (remove-duplicates (mapcar #'base:join-thread threads)))))
+               (is (= 1 (length (run::simulation-participants simulation))))
+               (is (= 1 (length (driver::interface-drivers
+                                 (driver::interface-of-simulation simulation)))))))))
+
 ;;; ON-ROBOT and fluents.
 
 (test on-robot.means-another-robot-for-its-extent

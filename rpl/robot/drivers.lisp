@@ -57,12 +57,11 @@
 (defun driver-runner (driver)
   (interface-runner (driver-interface driver)))
 
-(defun plans-owner (interface)
-  "Return the robot that the plans of INTERFACE drive or, if there are several, the run's name."
-  (let ((drivers (interface-drivers interface)))
-    (if (and drivers (null (rest drivers)))
-        (driver-robot (first drivers))
-        (simulation-name (interface-simulation interface)))))
+(defun plans-owner (interface drivers)
+  "Return the robot that the plans of DRIVERS in INTERFACE drive, or else the run's name."
+  (if (and drivers (null (rest drivers)))
+      (driver-robot (first drivers))
+      (simulation-name (interface-simulation interface))))
 
 ;;; Which driver.
 
@@ -175,14 +174,13 @@ has driven a robot of the run."
 
 (defun driver-fluent (variable driver)
   "Return the fluent of DRIVER, or the vector of fluents, that VARIABLE stands for."
-  (let ((entry (assoc variable (driver-fluents driver) :test #'eq)))
-    (if entry
-        (cdr entry)
-        ;; The variable was defined later.
-        (let ((fluent (make-fluent-for-variable variable (driver-robot driver))))
-          (setf (driver-fluents driver)
-                (append (driver-fluents driver) (list (cons variable fluent))))
-          fluent))))
+  (loop for fluents = (driver-fluents driver)
+        for entry = (assoc variable fluents :test #'eq)
+        when entry return (cdr entry)
+        ;; The variable was defined later, and other threads may be here too.
+        do (let ((fluent (make-fluent-for-variable variable (driver-robot driver))))
+             (swap-if-eq (driver-fluents driver) fluents
+                         (append fluents (list (cons variable fluent)))))))
 
 (defun fluent-of-robot (variable robot)
   "Return the fluent of ROBOT, or the vector of fluents, that VARIABLE stands for; NIL if no plan
@@ -209,9 +207,8 @@ NIL if there is no robot to drive."
   "Remove DRIVER, which has no plans any more, from its interface."
   (let ((interface (driver-interface driver)))
     (setf (driver-closed-p driver) t)
-    (when (eq driver (interface-default interface)) (setf (interface-default interface) nil))
+    (swap-if-eq (interface-default interface) driver nil)
     (removef (interface-drivers interface) driver)
-    (setf (interface-origin interface) nil)
     (remove-agent (driver-agent driver))))
 
 (defun tasks-of-driver (driver)
@@ -233,7 +230,7 @@ function, the plans end as soon as they can."
     (unless (driver-closing-p driver)
       (deferring-interrupts
         (setf (driver-closing-p driver) t)
-        (removef (robot-enders (driver-robot driver)) (driver-ender driver))
+        (atomic-remove (driver-ender driver) (robot-enders (driver-robot driver)))
         (cond ((or (interface-closing-p interface) (interface-closed-p interface)))
               ((holding-plans-p interface)
                (mapc (lambda (task) (stop-plan (interface-runner interface) task))
@@ -251,7 +248,7 @@ if there are any: that may let plans of other robots go on."
   (setf (driver-ender driver) (lambda () (close-driver driver)))
   (if (robot-retired (driver-robot driver))
       (close-driver driver)
-      (push (driver-ender driver) (robot-enders (driver-robot driver)))))
+      (atomic-push (driver-ender driver) (robot-enders (driver-robot driver)))))
 
 (defun dice-of-plans (robot simulation)
   "Return the dice for random choices of ROBOT's plans. They depend on the name of ROBOT if there
@@ -276,7 +273,6 @@ REPLACE-P is true. Return as second value an older driver that is to be closed, 
                        (make-agent :client driver :dice (dice-of-plans robot simulation)))
             (driver-fluents driver) (make-fluents robot))
       (push driver (interface-drivers interface))
-      (setf (interface-origin interface) nil)
       ;; Plans may be reacting.
       (prepare-agent driver))
     (asking (simulation) (set-ender driver))

@@ -11,8 +11,9 @@
 ;;; Rule for shared data: timers, ready tasks and everything else of the runner are read and
 ;;; changed by the thread that holds the lock. On release it publishes, as one value, the tick at
 ;;; which plans next need to run; the clock reads that. Posts, the tasks to end and those that
-;;; RUN-PLAN waits for are atomic lists. The list of top-level tasks is replaced as a whole, never
-;;; altered. A flag that only the plans' thread sets says whether it waits in a debugger.
+;;; RUN-PLAN waits for are atomic lists. The lists of top-level tasks and of drivers are replaced
+;;; as a whole, never altered. A flag that only the plans' thread sets says whether it waits in a
+;;; debugger.
 
 (addition *trace-plans*)
 (defparameter *trace-plans* nil
@@ -52,7 +53,7 @@ of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SA
    (next-tick nil (or null real (eql :ready))
               "published: the tick at which plans next go on; :READY if at once; or NIL"))
   (:link
-   (origin '() list "the origin that messages name for the plans, made once")
+   (origin '() list "a list of drivers, followed by the origin that messages name for their plans")
    (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
    (told nil t "a cons of the last failure noted in the journal and the remark, or NIL")
    (closing-p nil boolean "the interface is to end")

@@ -27,9 +27,16 @@ thread, or a plan has called this function, the plans end as soon as they can."
               (t (end-plans-in-this-thread interface #'interface-closed-p)))))))
 
 (defun attach-interface (interface)
+  "Let INTERFACE take part in its simulation, unless that has an interface, perhaps just made by
+another thread. Return the interface of the simulation."
   (let ((simulation (interface-simulation interface)))
     (setf (interface-runner interface) (make-runner interface))
-    (asking (simulation) (add-participant interface simulation))))
+    (asking (simulation)
+      (or (find-if (lambda (participant)
+                     (and (interface-p participant) (not (interface-closing-p participant))))
+                   (simulation-participants simulation))
+          (progn (add-participant interface simulation)
+                 interface)))))
 
 ;; The prompt sets it to a function that returns the robot that it commands.
 (defvar *commanded-robot-hook* (constantly nil)
@@ -69,12 +76,11 @@ plans of a live run go on while a headless simulation runs inside of the live ru
     (apply function arguments)))
 
 (defun add-interface (simulation eras)
-  "Return a new interface of SIMULATION with the ERAS of tasks, and use it from now on."
+  "Return the interface of SIMULATION, and use it from now on. A new one has the ERAS of tasks."
   ;; Other threads may set the variable meanwhile.
   (let ((before *default-interface*))
     (when (and before (plans-must-end-first-p before simulation)) (close-interface before))
-    (let ((interface (make-interface simulation eras)))
-      (attach-interface interface)
+    (let ((interface (attach-interface (make-interface simulation eras))))
       (setf *default-interface* interface)
       (when (eq simulation *simulation*) (store-environment simulation))
       interface)))
@@ -183,8 +189,11 @@ return true. No other thread may touch the plans meanwhile."
     (and drivers (null (rest drivers)) (driver-robot (first drivers)))))
 
 (defmethod participant-origin ((interface interface))
-  (or (interface-origin interface)
-      (setf (interface-origin interface) (list "the plans of " (plans-owner interface)))))
+  (let ((drivers (interface-drivers interface)) (made (interface-origin interface)))
+    (rest (if (and made (eq drivers (first made)))
+              made
+              (setf (interface-origin interface)
+                    (list drivers "the plans of " (plans-owner interface drivers)))))))
 
 ;; If plans have a thread, only that runs them: it may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)

@@ -126,7 +126,10 @@ or outside the map (reading 215)."
 
 (defun call-run-enders (robot)
   "Call the functions that were registered for the end of the run of ROBOT."
-  (call-each #'funcall (shiftf (robot-enders robot) '())))
+  ;; Other threads may add and remove functions meanwhile.
+  (loop for enders = (robot-enders robot)
+        until (swap-if-eq (robot-enders robot) enders '())
+        finally (call-each #'funcall enders)))
 
 (defun check-not-retired (resource operator)
   "Signal MISUSE if the robot of RESOURCE, a robot or part, is retired."

@@ -3,7 +3,7 @@
 (in-package :ars-magna.run)
 
 (export '(parse-robots check-entries-apart literal-robots-form names-in-robots
-          robot-list-form robots-expression-p))
+          robots-expression-p))
 
 ;;; A list of robots has names, robots, and entries (NAME :as OTHER-NAME :at (x y) :angle a):
 ;;; another robot of the kind NAME, or NAME at another start. A literal list in a macro has
