@@ -240,10 +240,8 @@
            (when (eql (plan-id plan) (first arguments))
              (doom (plan-act plan))
              (settle))))
-;; One after the other, the oldest first, and the others react in between.
-    (end-robot (dolist (plan (reverse (plans-modelled (first arguments))))
-                 (doom (plan-act plan))
-                 (settle)))
+    (end-robot (dolist (plan (plans-modelled (first arguments))) (doom (plan-act plan)))
+               (settle))
     (end-all (when (model-plans *model*)
                (dolist (plan (plans-modelled)) (doom (plan-act plan)))
                (settle)))

@@ -240,6 +240,20 @@
         (is (every #'rpl:task-over-p tasks))
         (signals base:wrong-argument (driver:end-plan (first tasks) :robot 'ada))))))
 
+(test end-plan.ends-plans-of-a-robot-together
+  (with-three ()
+    (let* ((valve (rpl:make-valve 'door)) (entered '())
+           (plan (rpl:interp-lambda (name)
+                   (rpl:with-valve (valve) (push name entered) (rpl:wait-time 100))))
+           (tasks (list (driver:begin-plan plan 'first :robot ada)
+                        (driver:begin-plan plan 'second :robot ada)
+                        (driver:begin-plan plan 'other :robot ben))))
+      (run:run-ticks 1)
+      (driver:end-plan :all :robot ada)
+      (run:run-ticks 1)
+      (is (equal '(:evaporated :evaporated :waiting) (mapcar #'rpl:task-state tasks)))
+      (is (equal '(other first) entered)))))
+
 (test commands.of-an-ended-plan-are-interrupted-on-every-robot
   (with-three ()
     (let ((task (driver:begin-plan (rpl:interp-lambda (mate)

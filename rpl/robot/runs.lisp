@@ -256,24 +256,32 @@ its name. Signals UNKNOWN-NAME."
           (let ((driver (find-driver robot interface))) (and driver (tasks-of-driver driver)))
           (tasks-of-interface interface)))))
 
-(defun request-plan-end (interface task)
-  "Request that the plan runner later evaporates TASK of INTERFACE, or all tasks if TASK is NIL."
+(defun request-plan-end (interface subject)
+  "Request that the plan runner later evaporates SUBJECT of INTERFACE: a task, the tasks of a driver
+or, if SUBJECT is NIL, all tasks."
   (check-not-secluded (interface-simulation interface))
-  (record-plan-action interface #'repeat-call #'repeat-plan-end '() (and task (task-serial task)))
-  (dolist (task (if task (list task) (tasks-of-interface interface)))
-    (unless (task-over-p task) (atomic-push task (interface-ends-requested interface))))
-  (stop-plan (interface-runner interface) task))
+  (record-plan-action interface #'repeat-call #'repeat-plan-end '()
+                      (and (task-p subject) (task-serial subject))
+                      (and (driver-p subject) (driver-robot subject)))
+  (let ((tasks (cond ((task-p subject) (list subject))
+                     (subject (tasks-of-driver subject))
+                     (t (tasks-of-interface interface)))))
+    (dolist (task tasks)
+      (unless (task-over-p task) (atomic-push task (interface-ends-requested interface))))
+    (dolist (task tasks) (stop-plan (interface-runner interface) task))))
 
-(defun end-plans-of-interface (interface task)
-  "Evaporate TASK of INTERFACE, or all tasks if TASK is NIL: now, or later in the plans' thread."
-  (request-plan-end interface task)
+(defun end-plans-of-interface (interface subject)
+  "Evaporate SUBJECT, as for REQUEST-PLAN-END: now, or later in the plans' thread."
+  (request-plan-end interface subject)
   (unless (or (holding-plans-p interface) (plans-thread interface))
     (asking ((interface-simulation interface))
       (with-plans (interface) (react-fully interface)))))
 
 (defun repeat-plan-end (subject)
-  "End SUBJECT, a task or all plans of a plan runner, in a repeated run as in the original run."
-  (end-plans-of-interface (usable-interface) (and (task-p subject) subject)))
+  "End SUBJECT, a task or all plans of an agent or plan runner, in a repeated run as in the original
+run."
+  (end-plans-of-interface (usable-interface) (cond ((task-p subject) subject)
+                                                   ((agent-p subject) (agent-client subject)))))
 
 (defun plan-ending-p (task)
   "True if TASK, a plan, is over or is to end. TASK may still be running."
@@ -320,7 +328,9 @@ can run here, or if the run was rewound to a tick before TASK began."
                   "a task, as begin-plan returns, or :ALL")
   (check-argument end-plan robot (or (null robot) (eq task :all)) "NIL unless TASK is :ALL")
   (cond ((not (eq task :all)) (end-task (task-in-current-run task)))
-        (robot (mapc #'end-task (plans robot)))
+        (robot (let* ((robot (robot-meant-in-plan robot)) (interface (usable-interface))
+                      (driver (and interface (find-driver robot interface))))
+                 (when driver (end-plans-of-interface interface driver))))
         (t (end-plans-of-interface (required-interface) nil)))
   (values))
 
