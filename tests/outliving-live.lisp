@@ -34,6 +34,25 @@
     (is-true (message-with "robot-turn was aborted"))
     (is-true (goes-on-p (live-shrew)))))
 
+(test clean.headless-runs-beside-a-live-run-are-clean-each-time
+  (with-live-shrew
+    (is (equal '(t t t) (loop repeat 3
+                              collect (run:with-simulation (shrew :clean t)
+                                        base:no-sensor-error*))))))
+
+(test rate.is-kept-after-the-clock-has-rested
+  (with-live-shrew
+    (let* ((pacing (time::timeline-pacing (time:timeline-of (live-shrew))))
+           (later (+ 1d6 (time:seconds-now))))
+      (setf (time::pacing-rate pacing) 20)
+      ;; A tick's time after the tick before, though a request has come at once,
+      (is (= later (time::time-to-go-on pacing later)))
+      ;; but ticks that were not needed are not made up,
+      (is (< 0 (time::time-to-go-on pacing 0d0) (time:seconds-now)))
+      ;; and RESUME takes effect at once.
+      (setf (time::pacing-paused-p pacing) t)
+      (is (< (time::time-to-go-on pacing later) later)))))
+
 (test live.a-thread-that-is-ended-can-be-replaced
   "It is said so; nothing hangs, and the simulator starts again."
   (with-live-shrew

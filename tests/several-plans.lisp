@@ -322,6 +322,23 @@
            (awaiting (eq :on (rpl:task-result task))))
       (run:stop-clock time:*simulation*))))
 
+;; Nothing but the wait lets time go on.
+(test live.a-plan-that-never-waits-delays-no-other
+  (with-three ()
+    (run:start-clock time:*simulation* :rate :free)
+    (unwind-protect
+         (let ((count 0) (latest 0))
+           (driver:begin-plan (rpl:interp-lambda () (loop (random 5))) :robot ada)
+           (driver:begin-plan (rpl:interp-lambda ()
+                                (loop (rpl:wait-time 1)
+                                      (setf latest (rpl:plan-time))
+                                      (incf count)))
+                              :robot ben)
+           (awaiting (< 20 count))
+           (is (<= 20 latest)))
+      (driver:end-plan :all)
+      (run:stop-clock time:*simulation*))))
+
 (test robots.that-leave-let-on-robot-fail
   (with-own-definitions ()
     (eval '(world:defmap fold (20 20)))

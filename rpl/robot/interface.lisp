@@ -50,8 +50,9 @@ of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SA
    (wish-tick nil t "the tick that the count in WISHES-SERVED is for"))
   (:memory
    (eras '() list "the eras of tasks, the newest first; see forking.lisp")
-   (next-tick nil (or null real (eql :ready))
-              "published: the tick at which plans next go on; :READY if at once; or NIL"))
+   (next-tick nil (or null real (cons (eql :ready) (or null real)))
+              "published: the tick of the first timer of plans, or NIL; if plans go on before,
+a pair of :READY and this"))
   (:link
    (origin '() list "a list of drivers, followed by the origin that messages name for their plans")
    (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
@@ -90,7 +91,9 @@ of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SA
   "Tell other threads when the plans of INTERFACE, which this thread holds, next go on."
   (let ((runner (interface-runner interface)))
     (setf (interface-next-tick interface)
-          (and runner (if (runner-idle-p runner) (next-wake-time runner) :ready)))))
+          (and runner
+               (let ((tick (next-wake-time runner)))
+                 (if (runner-idle-p runner) tick (cons :ready tick)))))))
 
 (defun call-holding-plans (function interface)
   "This thread has locked INTERFACE. Call FUNCTION, interruptibly, as the holder of its plans."
@@ -111,10 +114,10 @@ plans of INTERFACE, do not wait; return NIL and false."
                     (lambda () (call-holding-plans function interface)))))
 
 (defun wake-tick (interface)
-  "Return the earliest tick at which a plan of INTERFACE that waits for time wakes. Return NIL if no
-plan waits for time, or if a plan is ready. Any thread may call this function."
-  (let ((tick (interface-next-tick interface)))
-    (and (realp tick) tick)))
+  "Return the earliest tick at which a plan of INTERFACE that waits for time wakes, or NIL. Any
+thread may call this function."
+  (let ((published (interface-next-tick interface)))
+    (if (consp published) (cdr published) published)))
 
 (defun plans-ready-p (interface)
   "True if plans of INTERFACE are ready, have posts to apply, or wait for time. For any thread."

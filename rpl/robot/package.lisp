@@ -63,7 +63,8 @@
                 #:print-tasks #:find-procedure
                 #:plan-trace #:valve #:make-valve #:valve-losers #:note-command
                 #:with-answer #:runner-in-use #:task-agent #:task-client #:agent-client #:agent-p
-                #:make-agent #:add-agent #:remove-agent #:agents-in-order #:end-tasks-at-once
+                #:make-agent #:add-agent #:remove-agent #:agents-in-order #:slices-spent
+                #:end-tasks-at-once
                 #:calling-task #:*calling-task* #:task-variable #:procedure-p
                 #:shape-keys #:lambda-list-shape #:procedure-lambda-list #:make-task-bindings
                 #:enter #:frame-up #:*step-plans* #:*plan-start-hooks*

@@ -115,6 +115,16 @@ to run; NIL if the reaction was aborted."
   (wait-on-semaphore (interface-wake-up interface) seconds)
   (setf (interface-tick-wanted-p interface) nil))
 
+;; Other plans must not wait for one that never does.
+(defmethod slices-spent ((interface interface) runner)
+  "If this is the plans' thread, let time go on for plans that wait for it, and serve wishes."
+  (when (eq (current-thread) (interface-thread interface))
+    (let ((tick (simulation-tick (interface-simulation interface))))
+      (when (> tick (plan-runner-tick runner)) (advance-timers runner tick)))
+    (publish-next-tick interface)
+    (wake-idle-simulation interface)
+    (wish-to-serve interface)))
+
 (defun run-plans-thread (interface)
   (loop
     (loop while (plusp (interface-wanted interface)) do (yield-thread))
@@ -126,9 +136,10 @@ to run; NIL if the reaction was aborted."
                ;; With a listener for messages, as at the prompt, that is reported anyway.
                (unless (message-queue-listener *message-queue*) (warn-of-stranded-plans interface))
                (rest-until-woken interface)))
-      (:budget (when (or (must-wait-for-tick-p interface) (wish-to-serve interface))
-                 (setf (interface-tick-wanted-p interface) t)
-                 (rest-until-woken interface)))
+      (:budget (cond ((or (must-wait-for-tick-p interface) (wish-to-serve interface))
+                      (setf (interface-tick-wanted-p interface) t)
+                      (rest-until-woken interface))
+                     (t (wake-idle-simulation interface))))
       ((nil) (rest-until-woken interface 0.05)))))
 
 (defun call-as-plans-thread (interface function)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(react-to-all apply-next-batch agents-in-order))
+(export '(react-to-all apply-next-batch agents-in-order slices-spent))
 
 ;;; A reaction runs ready tasks until none is ready. Only then is the next posted batch applied, and
 ;;; time passes only when there is none. So a task that issues a command and waits for its pulse has
@@ -24,6 +24,13 @@ client of their plan runner.")
   (:method (client agents)
     (declare (ignore client))
     agents))
+
+(defgeneric slices-spent (client runner)
+  (:documentation "Called in a reaction of RUNNER, the plan runner of CLIENT, when tasks have used
+their slices. Time may have passed meanwhile. Return true if the reaction is to end now.")
+  (:method (client runner)
+    (declare (ignore client runner))
+    nil))
 
 ;;; Rounds.
 
@@ -145,7 +152,9 @@ agents, run only their tasks, and apply no posts. Return :budget if an agent is 
                 agents (if (rest all) (agents-in-order (runner-client runner) all) all))))
       (run-round runner agents)
       (cond ((and (null only) (apply-due-batch runner agents)))
-            ((renew-slices agents))
+            ((renew-slices agents)
+             (when (and (null only) (slices-spent (runner-client runner) runner))
+               (return :budget)))
             ((and (null only) (not (eq known (runner-agents runner)))))
             (t (return (if (some-out-p agents) :budget :idle)))))))
 

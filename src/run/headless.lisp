@@ -29,6 +29,12 @@ THINKING is the thinking mode. If GHOSTS is true, robots have no bodies."
     (when start (warn-of-angle-in-degrees 'with-simulation world (third start)))
     (make-robot (robot-entry-blueprint entry) world :name (robot-entry-name entry) :start start)))
 
+(defun call-leaving-current-run (settings function)
+  "Call FUNCTION, which starts a headless run, with parameters bound as CALL-WITH-PARAMETERS does.
+Store the variables of the current run, if any, before they are bound anew."
+  (when *simulation* (store-environment *simulation*))
+  (call-with-parameters settings function))
+
 (addition call-with-simulation)
 (defun call-with-simulation (function robots &key (seed 0) parameters clean journal keep ghosts
                                                (thinking :free) (errors :report) variables)
@@ -40,7 +46,7 @@ name. The other arguments are options of WITH-SIMULATION."
   (check-thinking-mode 'with-simulation thinking)
   (check-argument with-simulation errors (typep errors 'error-policy)
                   ":report, :signal or :collect")
-  (call-with-parameters
+  (call-leaving-current-run
    parameters
    (lambda ()
      (check-parameters)
@@ -55,7 +61,6 @@ name. The other arguments are options of WITH-SIMULATION."
   "Call FUNCTION with the headless SIMULATION as the current simulation. Bind the names of its
 robots to the robots. VARIABLES are further symbols to bind, each to the robot of the same name.
 KEEP says how many forks the run keeps, see KEEP-FORKS. The run is over at the end."
-  (when *simulation* (store-environment *simulation*))
   (let* ((*message-queue* (simulation-messages simulation))
          (*simulation* simulation)
          (*world* (simulation-world simulation))

@@ -246,7 +246,7 @@ the run uses must be loaded. Nothing in FILE is executed. Signals:
 (defun call-with-loaded-simulation (function file &key anyway keep)
   "Call FUNCTION in the simulation that is saved in FILE; see WITH-LOADED-SIMULATION."
   (multiple-value-bind (simulation noise) (load-saved-run file anyway)
-    (call-with-parameters
+    (call-leaving-current-run
      (settings-of simulation)
      (lambda ()
        (setf *noise-before-cleaning* noise)

@@ -34,18 +34,26 @@
       (pause-in-effect-p pacing)
       (funcall (pacing-idle-p pacing))))
 
-(defun keep-pace (custody pacing due)
-  "Sleep until the time DUE, in seconds. Return the time when the next tick is due."
+(defun seconds-per-tick (pacing)
   (let ((rate (pacing-rate pacing)))
-    (if (eq rate :free)
-        (seconds-now)
-        (loop for left = (- due (seconds-now))
-              while (and (plusp left)
-                         (not (paused-or-stopped-p pacing))
-                         (eql rate (pacing-rate pacing)))
-              do (sleep-until-woken custody left)
-                 (answer-questions custody)
-              finally (return (+ (max due (- (seconds-now) 0.25d0)) (/ 1d0 (float rate 1d0))))))))
+    (if (eq rate :free) 0d0 (/ 1d0 (float rate 1d0)))))
+
+(defun keep-pace (custody pacing last)
+  "Sleep until the next tick is due, if the tick before was due at the time LAST, in seconds. Return
+the time when the next tick was due; lateness of more than a quarter of a second is not made up."
+  ;; The rate may change meanwhile.
+  (loop for due = (+ last (seconds-per-tick pacing))
+        for left = (- due (seconds-now))
+        while (and (plusp left) (not (paused-or-stopped-p pacing)))
+        do (sleep-until-woken custody left)
+           (answer-questions custody)
+        finally (return (max due (- (seconds-now) (if (eq :free (pacing-rate pacing)) 0 0.25d0))))))
+
+(defun time-to-go-on (pacing last)
+  "Return the time from which KEEP-PACE counts after a rest, if the tick before was due at LAST. The
+next tick is due at once after a pause; otherwise, as ever, a tick's time after LAST at least."
+  (let ((earliest (- (seconds-now) (seconds-per-tick pacing))))
+    (if (pacing-paused-p pacing) earliest (max last earliest))))
 
 ;;; Passing ticks.
 
@@ -65,7 +73,7 @@
 
 (defun run-paced (custody pacing)
   "Pass ticks at the pace of PACING, until PACING is stopped or another thread has CUSTODY."
-  (loop with due = (seconds-now)
+  (loop with last = (- (seconds-now) (seconds-per-tick pacing))
         until (or (pacing-stopping-p pacing) (not (has-custody-p custody)))
         do (answer-questions custody)
            (cond ((nothing-to-do-p pacing)
@@ -73,8 +81,8 @@
                   (sleep-until-woken custody 1 (lambda ()
                                                  (and (nothing-to-do-p pacing)
                                                       (not (pacing-stopping-p pacing)))))
-                  (setf due (seconds-now)))
-                 (t (setf due (keep-pace custody pacing due))
+                  (setf last (time-to-go-on pacing last)))
+                 (t (setf last (keep-pace custody pacing last))
                     ;; It may have been paused while it waited.
                     (unless (paused-or-stopped-p pacing)
                       (pass-tick pacing))))))
