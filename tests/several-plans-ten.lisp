@@ -84,3 +84,28 @@
     (let ((alone (ends nil)))
       (is (= 9 (length alone)))
       (is (equal alone (ends t))))))
+
+;;; Dice of plans.
+
+(defun two-draws (robot)
+  "Run a plan on ROBOT, named, that draws from both kinds of dice of plans; return what it draws."
+  (driver:run-plan (rpl:interp-lambda ()
+                     (rpl:wait-time 1)
+                     (list (random 1000000)
+                           (rpl:try-one 1 2 3 4) (rpl:try-one 1 2 3 4) (rpl:try-one 1 2 3 4)))
+                   :robot robot))
+
+(test saved-runs.of-several-robots-go-on-with-the-dice-of-their-plans
+  (with-temporary-file (file)
+    (with-three (:seed 3)
+      (let ((before (two-draws 'ada)) (digest nil) (after '()))
+        (run:save-simulation file)
+        (setf digest (run:state-digest))
+        (flet ((go-on () (list (two-draws 'ben) (two-draws 'ada) (two-draws 'ada))))
+          (run:with-fork () (setf after (go-on)))
+          (is (= 4 (length (remove-duplicates (cons before after) :test #'equal))))
+          (is (equal after (run:with-loaded-simulation (file)
+                             (is (= digest (run:state-digest)))
+                             (go-on))))
+          (driver:rpl-init-robot ada)
+          (is (equal after (go-on))))))))

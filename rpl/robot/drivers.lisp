@@ -113,12 +113,13 @@ prompt commands; NIL if several robots are possible."
                (and robot (find-driver robot interface)))))))
 
 (defun driver-here ()
-  "Return the driver that the calling code means, or NIL."
-  (let* ((interface (usable-interface)) (task (and interface (calling-task))))
-    (cond ((null interface) nil)
-          (*begun-driver*)
+  "Return the driver that the calling code means, or NIL. A plan may have a driver even if its run
+is over."
+  (let* ((interface (interface-in-use-here))
+         (task (and interface (in-current-world-p interface) (calling-task))))
+    (cond ((and *begun-driver* (usable-interface-p interface)) *begun-driver*)
           ((and task (eq (task-runner task) (interface-runner interface))) (driver-of-task task))
-          (t (default-driver interface)))))
+          ((usable-interface-p interface) (default-driver interface)))))
 
 (defun reject-without-robot ()
   (let ((robots (and *simulation* (simulation-robots *simulation*)))
@@ -250,13 +251,32 @@ if there are any: that may let plans of other robots go on."
       (close-driver driver)
       (atomic-push (driver-ender driver) (robot-enders (driver-robot driver)))))
 
-(defun dice-of-plans (robot simulation)
-  "Return the dice for random choices of ROBOT's plans. They depend on the name of ROBOT if there
-are several robots."
-  (make-dice (simulation-seed simulation)
-             (if (rest (simulation-robots simulation))
-                 (format nil "plans of ~A" (robot-full-name robot))
-                 :plans)))
+;;; A saved run has no plans, and no dice of plans. So a robot's plans get new dice whenever one of
+;;; them begins while the robot has no other. The dice depend on how often that has happened. Only
+;;; the holder of the plans changes this number.
+
+(defun seed-of-plans (driver)
+  "Return the seed of the run of DRIVER, changed if the plans of its robot have had dice before."
+  (let ((seed (simulation-seed (driver-simulation driver)))
+        (times (mind-plan-times (robot-mind (driver-robot driver)))))
+    (if (< times 2) seed (mixed-word (ldb (byte 64 0) seed) times))))
+
+(defun name-of-plans-dice (driver)
+  "Return a name for the dice of the plans of DRIVER. It has the robot's name if there are several
+robots."
+  (if (rest (simulation-robots (driver-simulation driver)))
+      (format nil "plans of ~A" (robot-full-name (driver-robot driver)))
+      :plans))
+
+(defun note-plans-dice-used (driver)
+  (incf (mind-plan-times (robot-mind (driver-robot driver)))))
+
+(defun renew-plans-dice (driver)
+  "A plan of DRIVER begins. If there is no other, give the plans of DRIVER new dice."
+  (unless (tasks-of-driver driver)
+    (note-plans-dice-used driver)
+    (reseed-agent (driver-agent driver) (seed-of-plans driver) (name-of-plans-dice driver))
+    (give-random-state driver)))
 
 ;; The owner of the run must never wait for plans, which may be asking it: so these are two steps.
 (defun add-driver (robot interface replace-p)
@@ -270,7 +290,9 @@ REPLACE-P is true. Return as second value an older driver that is to be closed, 
       (when (and before (not replace-p)) (return-from add-driver before))
       (setf (driver-agent driver)
             (add-agent (interface-runner interface)
-                       (make-agent :client driver :dice (dice-of-plans robot simulation)))
+                       (make-agent :client driver
+                                   :dice (make-dice (seed-of-plans driver)
+                                                    (name-of-plans-dice driver))))
             (driver-fluents driver) (make-fluents robot))
       (push driver (interface-drivers interface))
       ;; Plans may be reacting.

@@ -218,11 +218,14 @@ you can meanwhile answer a plan that waits in a debugger."
   (warn-once key (simulation-world (interface-simulation interface))
              (apply #'format nil control arguments)))
 
+(defun in-current-world-p (interface)
+  (or (null *world*)
+      (eq *world* (simulation-world (interface-simulation interface)))))
+
 (defun usable-interface-p (interface)
   (and interface
        (interface-valid-p interface)
-       (or (null *world*)
-           (eq *world* (simulation-world (interface-simulation interface))))))
+       (in-current-world-p interface)))
 
 (defun interface-in-use-here ()
   "Return the interface whose plans react in this thread, or else the interface in use; or NIL."

@@ -138,7 +138,7 @@ copy. Otherwise plans and other programs of the run share a random state."
                (or (simulation-plans-dice-p simulation)
                    (rest (simulation-robots simulation))))
       (setf (agent-lisps-dice agent)
-            (seeded-random-state (+ (simulation-seed simulation) (seed-of-robot driver)))))))
+            (seeded-random-state (+ (seed-of-plans driver) (seed-of-robot driver)))))))
 
 (defmethod agents-in-order ((interface interface) agents)
   (let ((salt (agenda-salt (simulation-agenda (interface-simulation interface)))))

@@ -69,6 +69,7 @@ the task before anything else can happen."
     (prog1 (with-plans (interface)
              ;; Live, plans may not have reacted for long.
              (note-tick (interface-runner interface) (simulation-tick simulation))
+             (renew-plans-dice driver)
              (let ((task (let ((*begun-driver* driver))
                            (apply #'start-plan (driver-agent driver) plan arguments))))
                (funcall note task)

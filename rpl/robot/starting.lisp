@@ -231,6 +231,7 @@ return true. No other thread may touch the plans meanwhile."
 
 (defmethod participant-reseed ((interface interface) seed)
   (dolist (driver (interface-drivers interface))
+    (when (tasks-of-driver driver) (note-plans-dice-used driver))
     (reseed-agent (driver-agent driver) (+ seed (seed-of-robot driver)))))
 
 ;; The current step of a live plan cannot be waited for: then only whether it is at work counts.

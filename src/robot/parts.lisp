@@ -40,7 +40,10 @@
    (robot nil t "the robot that the resource belongs to" :export)))
 
 (define-kind (mind :include inner-resource)
-    "The resource that THINK occupies, so that body and parts continue while a robot thinks.")
+    "The resource that THINK occupies, so that body and parts continue while a robot thinks."
+  (:memory
+   (plan-times 0 (unsigned-byte 60) "how many times a plan of the robot has begun while the robot
+had no other, since the seed of the run was set" :export)))
 
 (define-kind (radio :include inner-resource)
     "The resource that ROBOT-SEND occupies, with the mailbox of the robot; see messages.lisp."

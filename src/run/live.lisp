@@ -79,9 +79,11 @@ successor. Return SIMULATION."
   (world-simulation world))
 
 (defun startable-p (simulation journal)
-  "True if SIMULATION has not begun, is not over, and keeps a journal if JOURNAL is true."
+  "True if SIMULATION has not begun, is not over, was never live, and keeps a journal if JOURNAL is
+true."
   (and (zerop (simulation-tick simulation))
        (not (simulation-over simulation))
+       (null (pace simulation))
        (or (not journal) (simulation-journal simulation))))
 
 (defun warn-of-namesakes (name other world)
@@ -110,8 +112,8 @@ robots of one name in different packages, only warn."
                       (lambda (name other) (warn-of-namesakes name other world))))
 
 (defun simulation-to-start (world seed journal ghosts)
-  "Return the simulation of WORLD that is to run live: a new one if the last is over, has passed
-ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the dice. If GHOSTS is
+  "Return the simulation of WORLD that is to run live: a new one if the last is over, was live, has
+passed ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the dice. If GHOSTS is
 true, robots have no bodies."
   (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation))
          (startable-p (startable-p simulation journal)))

@@ -244,6 +244,8 @@ rate :FREE, kickers wait for a request, too; otherwise millions of ticks would p
   (check-argument set-seed seed (integerp seed) "an integer")
   (changing ((simulation-world simulation) set-seed seed)
     (seed-world (simulation-world simulation) seed)
+    (dolist (robot (simulation-robots simulation))
+      (setf (mind-plan-times (robot-mind robot)) 0))
     (dolist (participant (simulation-participants simulation))
       (participant-reseed participant seed))
     (cond ((member *random-state-variable* (simulation-variables simulation))
