@@ -58,6 +58,8 @@
      "STEP 10 lets 10 ticks pass, PAUSE and RESUME stop and start time.")
     (("RUN-PLAN" "BEGIN-PLAN")
      "PLAN name argument... carries out a plan; in Lisp it is (run-plan 'name argument...).")
+    (("END-PLAN" "END-PLANS")
+     "STOP-PLAN ends all plans, STOP-PLAN 2 plan number 2; in Lisp it is (end-plan plan).")
     (("EACH" "EVERY" "EVERYBODY" "BOTH")
      "ALL: TURN 1 gives the command TURN 1 to each robot; ROBOT lists the robots.")
     (("HALT" "KILL" "ABORT") "STOP stops the robot, STOP-PLAN ends plans, PAUSE stops time.")

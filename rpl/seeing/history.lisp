@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(bar bar-label bars span))
+(export '(bar bar-label bars span answer-entry))
 
 ;;; All of these take a task, over or not, or the number of one, and its runner if that is not the
 ;;; one in use; and signal MISUSE where no trace was kept.
