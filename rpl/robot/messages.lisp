@@ -79,8 +79,8 @@ has any."
         "BEGIN-PLAN")))
 
 (defun remedy-for-no-message (tasks client awaited)
-  "Return a text on how to get messages sent to TASKS of CLIENT's run, or NIL if only other plans are
-of interest, as RUN-PLAN waits for them. AWAITED is as for ADVICE-ON-EVENT."
+  "Return a text on how to get messages sent to TASKS of CLIENT's run. Return NIL if RUN-PLAN waits
+for other plans only, so that advice on TASKS is of no use. AWAITED is as for ADVICE-ON-EVENT."
   (let* ((run-plans (interface-awaited (driver-interface client)))
          (task (find-if (lambda (task) (member (task-top task) (cons awaited run-plans))) tasks)))
     (cond ((null (rest (simulation-robots (driver-simulation client))))

@@ -56,7 +56,8 @@
                 #:waiting-parts #:failure-text #:misspelt-handler-text #:lisp-failure
                 #:waiting-plans-text #:advice-on-endless-waits #:fluents-awaited
                 #:fluent-text #:note-plan-function #:has-plan-function-p #:plan-call-text
-                #:pulse-of-command #:last-command #:last-pulse-tick #:endless-advice #:advice-on-event
+                #:pulse-of-command #:last-command #:last-pulse-tick #:endless-advice
+                #:advice-on-event
                 #:+no-fluent+ #:robot-fluent-p #:note-changed-by-commands
                 #:plan-backtrace #:operator-called-p
                 #:task-awaiting

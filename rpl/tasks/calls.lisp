@@ -139,8 +139,9 @@ of TASK caused this pulse; otherwise NIL. CLIENT has recorded the commands.")
 
 (defgeneric advice-on-event (client fluent tasks awaited)
   (:documentation "If FLUENT changes at events of CLIENT's run other than the ends of commands,
-return a list of texts that say which these are, and what to do so that such an event happens. A
-text may be NIL. Otherwise return NIL. TASKS wait for FLUENT. A caller waits for the end of the plan AWAITED, unless it is NIL.")
+return a list of texts that say which these are, and what to do so that such an event happens;
+otherwise NIL. TASKS wait for FLUENT. A caller other than RUN-PLAN waits for the end of the plan
+AWAITED, unless it is NIL.")
   (:method (client fluent tasks awaited)
     (declare (ignore client fluent tasks awaited))
     nil))

@@ -231,9 +231,9 @@ than RUN-PLAN waits for the end of the plan AWAITED, unless it is NIL."
                        when texts collect (cons fluent texts)))
          (others (other-fluents fluents (mapcar #'first events))))
     (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is in progress: ~
-                 issue a command before the wait. ~]~@[~A~]~{ ~A~}~@[ Only SET-VALUE and PULSE change ~
-                 ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~:{~A is ~(~S~)~:^, ~}~
-                 , and stays so, because no task goes on.~]~@[ ~A~]~@[ ~A~]"
+                 issue a command before the wait. ~]~@[~A~]~{ ~A~}~@[ Only SET-VALUE and PULSE ~
+                 change ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~:{~A is ~
+                 ~(~S~)~:^, ~}, and stays so, because no task goes on.~]~@[ ~A~]~@[ ~A~]"
             (and valueless (no-fluent-advice valueless))
             (and robots
                  (format nil "~{~A~^, ~} change~:[s~;~]"

@@ -64,8 +64,8 @@ vectors of these, of limited size."
 ;;; Mailboxes.
 
 (define-event *message-hooks*
-  "Functions called when a message has arrived in the mailbox of a robot, with the robot, the name of
-the sender, and the tick in which the message was sent.")
+  "Functions called when a message has arrived in the mailbox of a robot, with the robot, the name
+of the sender, and the tick in which the message was sent.")
 
 ;; Digests of runs without messages are as they were before there were radios.
 (defmethod digest-state ((radio radio) digest)
