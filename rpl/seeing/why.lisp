@@ -42,6 +42,7 @@ empty string if the task had not begun."
 ;;; Agents.
 
 (defun issue-description (issue trace)
+  "Return a text of ISSUE, a command in TRACE: the call, its task and its tick."
   (let ((entry (find issue trace :key #'trace-entry-subject)))
     (format nil "~A, which task ~D issued~@[ at tick ~D~]"
             (short-form-text (cons (issue-name issue) (issue-arguments issue)))
