@@ -367,6 +367,7 @@
                  (:file "several-plans-model") (:file "several-plans-random")
                  (:file "several-plans-ten") (:file "several-joining")
                  (:file "several-rewinding") (:file "messages") (:file "messages-kept")
+                 (:file "messages-plans")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")

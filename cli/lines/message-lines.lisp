@@ -6,14 +6,13 @@
 
 (defvar *show-arrivals-p* nil "When true, each message that a robot receives is shown.")
 
-(defun show-arrivals (robot)
-  "If asked for, queue a message about the newest message that has arrived at ROBOT."
+(defun show-arrivals (robot sender tick)
+  "If asked for, queue a message about the newest message, of SENDER, that has arrived at ROBOT."
+  (declare (ignore tick))
   (when *show-arrivals-p*
-    (destructuring-bind (message sender tick)
-        (first (last (last-arrivals robot (world-tick (robot-world robot)))))
-      (declare (ignore tick))
-      (let ((*reported-robot* (robot-name robot)))
-        (message-set (format nil "heard ~A from ~(~A~)" (safe-text message) sender))))))
+    (let ((message (caar (last (last-arrivals robot (world-tick (robot-world robot))))))
+          (*reported-robot* (robot-name robot)))
+      (message-set (format nil "heard ~A from ~(~A~)" (safe-text message) sender)))))
 
 (add-listener *message-hooks* show-arrivals)
 

@@ -38,7 +38,7 @@
   "Lists (name line): names that other programs use for line commands of the prompt.")
 
 (defparameter *newcomer-hints*
-  '((("LEFT")  "TURN-LEFT turns by a quarter, TURN -30 deg by an angle.")
+  `((("LEFT")  "TURN-LEFT turns by a quarter, TURN -30 deg by an angle.")
     (("RIGHT") "TURN-RIGHT turns by a quarter, TURN 30 deg by an angle.")
     (("FORWARD" "FORWARDS" "FD" "FWD" "AHEAD" "MOVE" "DRIVE" "WALK" "STRAIGHT")
      "GO 5 m drives 5 metres ahead, GO-FORWARD 5 drives for 5 ticks, GOTO-WALL to a wall.")
@@ -57,7 +57,10 @@
     (("WAIT" "SLEEP" "TICK" "RUN-TICKS")
      "STEP 10 lets 10 ticks pass, PAUSE and RESUME stop and start time.")
     (("RUN-PLAN" "BEGIN-PLAN")
-     "PLAN name argument... carries out a plan; in Lisp it is (run-plan 'name argument...).")
+     ,(format nil "PLAN name argument... carries out a plan; in Lisp it is (run-plan 'name ~
+                   argument...). (begin-plan 'name argument...) does not wait for its end."))
+    (("END-PLAN" "END-PLANS")
+     "STOP-PLAN ends all plans, STOP-PLAN 2 plan number 2; in Lisp it is (end-plan plan).")
     (("EACH" "EVERY" "EVERYBODY" "BOTH")
      "ALL: TURN 1 gives the command TURN 1 to each robot; ROBOT lists the robots.")
     (("HALT" "KILL" "ABORT") "STOP stops the robot, STOP-PLAN ends plans, PAUSE stops time.")

@@ -143,9 +143,10 @@ waits for in vain, and what could be done."
 
 ;;; Deadlocks.
 
-(defun stuck-plan-texts (runner task)
+(defun stuck-plan-texts (runner task awaited-p)
   "If no plan of RUNNER can ever continue, return a list of two texts: what TASK waits for, and what
-could be done. Otherwise return NIL. Call this function while no plan reacts."
+could be done. Otherwise return NIL. AWAITED-P is true if the session waits for the end of TASK.
+Call this function while no plan reacts."
   (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
     (let ((tasks (waiting-parts task)))
       (list (text-in-user-syntax (lambda (tasks)
@@ -153,11 +154,13 @@ could be done. Otherwise return NIL. Call this function while no plan reacts."
                                            (or (text-of-waits tasks) "what cannot come")))
                                  tasks)
             (let ((advice (one-line (call-in-user-syntax (lambda ()
-                                                           (advice-on-endless-waits tasks))))))
+                                                           (advice-on-endless-waits
+                                                            tasks (and awaited-p task)))))))
               (and (string/= "" advice) (cut advice 1000)))))))
 
 (defun note-if-stuck (job runner)
-  (setf (plan-job-stuck job) (stuck-plan-texts runner (plan-job-task job))))
+  (setf (plan-job-stuck job)
+        (stuck-plan-texts runner (plan-job-task job) (session-patient-p (plan-job-session job)))))
 
 ;;; Live.
 

@@ -3,7 +3,8 @@
 (in-package :ars-magna.rpl.fluents)
 
 (export '(make-watcher watcher watcher-p define-linked-list home-forked-p declare-fluent-variable
-          known-pulse-p known-fluent-variable-p vector-variable-kind robot-fluent-p))
+          known-pulse-p known-fluent-variable-p vector-variable-kind robot-fluent-p
+          note-changed-by-commands))
 
 ;;; A base fluent is set. A derived fluent is computed from its sources. While it has no user, it is
 ;;; computed on demand and its sources have no link to it. Its first user, a watcher or a used
@@ -169,14 +170,25 @@ Signals WRONG-ARGUMENT unless COUNT is an integer from 0 to a million."
 ;;; fluents. A vector is always true, so a condition never means it.
 
 (defvar *known-fluent-variables* (make-hash-table :test 'eq :synchronized t)
-  "A table from variables to lists (kind pulsed-p). If the variable holds a fluent, KIND is T. If it
-holds a vector of fluents, one for each part of a kind, KIND names this kind. PULSED-P is true if
-these fluents are pulsed and never set.")
+  "A table from variables to lists (kind pulsed-p commands-p). If the variable holds a fluent, KIND
+is T. If it holds a vector of fluents, one for each part of a kind, KIND names this kind. PULSED-P
+is true if these fluents are pulsed and never set. COMMANDS-P is true if commands change them.")
 
 (defun declare-fluent-variable (name &key (kind t) pulsed-p)
   "Record that the variable NAME holds a fluent, or a vector of fluents for parts of KIND, a string.
 If PULSED-P is true, these fluents are pulsed and never set."
-  (setf (gethash name *known-fluent-variables*) (list kind pulsed-p)))
+  (setf (gethash name *known-fluent-variables*)
+        (list kind pulsed-p (changed-by-commands-p name))))
+
+(defun changed-by-commands-p (name)
+  (third (gethash name *known-fluent-variables*)))
+
+(defun note-changed-by-commands (name)
+  "Record that commands of the robot change the fluents in the variable NAME."
+  (destructuring-bind (&optional (kind t) pulsed-p commands-p)
+      (gethash name *known-fluent-variables*)
+    (declare (ignore commands-p))
+    (setf (gethash name *known-fluent-variables*) (list kind pulsed-p t))))
 
 (defun known-pulse-p (name)
   "True if the variable NAME holds fluents that are pulsed and never set."
@@ -212,7 +224,8 @@ If PULSED-P is true, these fluents are pulsed and never set."
         when (string-equal name variable) return variable))
 
 (defun robot-fluent-p (fluent)
-  "True if the robot sets FLUENT: FLUENT has the name of a known variable, or of an element of the
-vector in a known variable."
-  (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name)))
-    (and (fluent-variable-named (subseq name 0 space)) t)))
+  "True if only commands of the robot change FLUENT: FLUENT has the name of a known variable that
+commands change, or of an element of the vector in such a variable."
+  (let* ((name (safe-text (fluent-name fluent) :escape nil)) (space (position #\Space name))
+         (variable (fluent-variable-named (subseq name 0 space))))
+    (and variable (changed-by-commands-p variable) t)))

@@ -40,7 +40,7 @@ ROBOT, otherwise the first argument."
     (if (eql serial (task-serial (task-top task))) (values operator part) nil)))
 
 (defun issue-in-plan (driver operator command outcome arguments)
-  (let ((issue (note-command operator arguments)))
+  (let ((issue (note-command operator arguments (robot-name (driver-robot driver)))))
     (multiple-value-bind (resource arguments)
         (convert-resource arguments (spec-type (command-resource command)) operator)
       (let ((arguments (loop for spec in (command-parameters command)
@@ -154,6 +154,8 @@ only the fluents of :SET, which describe the robot's state. See reading 179."
              collect `(,(if ours 'addition 'public) ,name)
              collect `(setf (get ',command-name 'result-fluents)
                             ',(remove-duplicates (clause-fluents clauses '(:set :error))))
+             collect `(mapc #'note-changed-by-commands
+                            ',(remove-duplicates (clause-fluents clauses)))
              collect `(note-plan-function
                        ',command-name '(,name ,@parameters)
                        ',(clause-fluent-form :pulse clauses (first parameters))

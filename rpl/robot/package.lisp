@@ -57,7 +57,9 @@
                 #:waiting-plans-text #:advice-on-endless-waits #:fluents-awaited
                 #:fluent-text #:note-plan-function #:has-plan-function-p #:plan-call-text
                 #:pulse-of-command #:last-command #:last-pulse-tick #:endless-advice
-                #:+no-fluent+ #:robot-fluent-p #:plan-backtrace #:operator-called-p
+                #:advice-on-event
+                #:+no-fluent+ #:robot-fluent-p #:note-changed-by-commands
+                #:plan-backtrace #:operator-called-p
                 #:task-awaiting
                 #:report-end #:agent-lisps-dice #:reseed-agent #:digest-runner
                 #:print-tasks #:find-procedure
@@ -79,6 +81,8 @@
                 #:end-with-value
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:end-with-signal #:remove-waiting-task
-                #:task-frame
+                #:task-frame #:task-name
+                #:trace-entry-event #:trace-entry-subject #:trace-entry-tick #:trace-entry-value
+                #:issue-name #:issue-robot #:issue-description #:answer-entry #:asker-description
                 #:twin-here
                 #:note-outside-call #:current-counterpart #:advice-on-call #:advice-on-goal))

@@ -7,8 +7,8 @@
 ;;; through, and that of users' functions which it calls.
 
 (defparameter *fluent-setters*
-  '(set-value pulse (setf fluent-value) begin-plan)
-  "The names of functions that change fluents, or begin plans that may change fluents.")
+  '(set-value pulse (setf fluent-value) begin-plan robot-send)
+  "The names of functions that change fluents, or cause changes, as plans and messages do.")
 
 (defun may-set-fluents-p (object seen)
   "True if OBJECT, found in the code of a function, may change a fluent, directly or through

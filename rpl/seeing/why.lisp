@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(reasons))
+(export '(reasons asker-description issue-description))
 
 ;;; Effects follow their causes in the trace at once: a wake-up is due to the last change before it
 ;;; of what was waited for, the end of a wait for parts to the last part that ended.
@@ -42,18 +42,21 @@ empty string if the task had not begun."
 ;;; Agents.
 
 (defun issue-description (issue trace)
+  "Return a text of ISSUE, a command in TRACE: the call, its task and its tick."
   (let ((entry (find issue trace :key #'trace-entry-subject)))
     (format nil "~A, which task ~D issued~@[ at tick ~D~]"
             (short-form-text (cons (issue-name issue) (issue-arguments issue)))
             (issue-task issue) (and entry (trace-entry-tick entry)))))
 
-(defun asker-description (asker trace)
-  (cond ((integerp asker)
-         (format nil "task ~D, ~A" asker (task-description asker trace)))
-        ((answer-p asker)
-         (format nil "the answer~@[ ~S~] to ~A" (answer-error asker)
-                 (issue-description (answer-issue asker) trace)))
-        (t (asker-text asker))))
+(defgeneric asker-description (asker trace)
+  (:documentation "Return a text of ASKER, the cause of an event in TRACE, with what led to it.")
+  (:method (asker trace)
+    (if (answer-p asker)
+        (format nil "the answer~@[ ~S~] to ~A" (answer-error asker)
+                (issue-description (answer-issue asker) trace))
+        (asker-text asker)))
+  (:method ((asker integer) trace)
+    (format nil "task ~D, ~A" asker (task-description asker trace))))
 
 (defun task-description (number trace)
   (let ((start (start-entry number trace)))

@@ -5,6 +5,7 @@
 (export '(lambda-list-shape lambda-list-text unknown-keyword-text arguments-misfit-text
                             note-plan-function
           has-plan-function-p plan-call-text wait-for-end-text last-command last-pulse-tick
+          advice-on-event
           plan-function-p result-fluent-forms pulse-of-command fluent-of-error-code))
 
 (define-record (shape (:constructor make-shape (least most fixed keys open)))
@@ -134,4 +135,13 @@ function. CLIENT has recorded the calls.")
 of TASK caused this pulse; otherwise NIL. CLIENT has recorded the commands.")
   (:method (client task fluent)
     (declare (ignore client task fluent))
+    nil))
+
+(defgeneric advice-on-event (client fluent tasks awaited)
+  (:documentation "If FLUENT changes at events of CLIENT's run other than the ends of commands,
+return a list of texts that say which these are, and what to do so that such an event happens;
+otherwise NIL. TASKS wait for FLUENT. A caller other than RUN-PLAN waits for the end of the plan
+AWAITED, unless it is NIL.")
+  (:method (client fluent tasks awaited)
+    (declare (ignore client fluent tasks awaited))
     nil))

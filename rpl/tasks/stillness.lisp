@@ -208,22 +208,38 @@ TASK needs. DATA, the data of one of TASK's frames, refers to the resource.")
          (format nil "~A does not end by itself. End it by (return), or start the plan by ~
                       BEGIN-PLAN, which does not wait for the end of a plan." (form-text form)))))
 
-(defun advice-on-endless-waits (tasks)
-  "Return sentences with advice about TASKS, which wait and which nothing will wake."
+(defun event-advice (fluent tasks awaited)
+  (let ((waiting (remove-if-not (lambda (task) (member fluent (fluents-awaited (list task))))
+                                tasks)))
+    (advice-on-event (task-client (first waiting)) fluent waiting awaited)))
+
+(defun other-fluents (fluents advised)
+  "Return those of FLUENTS that only programs and tasks change. ADVISED change at other events."
+  (remove-if (lambda (fluent)
+               (or (robot-fluent-p fluent) (status-fluent-p fluent) (member fluent advised)))
+             fluents))
+
+(defun advice-on-endless-waits (tasks &optional awaited)
+  "Return sentences with advice about TASKS, which wait and which nothing will wake. A caller other
+than RUN-PLAN waits for the end of the plan AWAITED, unless it is NIL."
   (let* ((valueless (find +no-fluent+ tasks :key #'task-awaiting))
          (fluents (fluents-awaited tasks))
          (robots (remove-if-not #'robot-fluent-p fluents))
          (states (remove-if-not #'status-fluent-p fluents))
-         (others (remove-if #'status-fluent-p (remove-if #'robot-fluent-p fluents))))
+         (events (loop for fluent in fluents
+                       for texts = (event-advice fluent tasks awaited)
+                       when texts collect (cons fluent texts)))
+         (others (other-fluents fluents (mapcar #'first events))))
     (format nil "~@[ ~A~]~@[ ~A when a command of the robot ends, and no command is in progress: ~
-                 issue a command before the wait. ~]~@[~A~]~@[ Only SET-VALUE and PULSE change ~
-                 ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~:{~A is ~(~S~)~:^, ~}~
-                 , and stays so, because no task goes on.~]~@[ ~A~]~@[ ~A~]"
+                 issue a command before the wait. ~]~@[~A~]~{ ~A~}~@[ Only SET-VALUE and PULSE ~
+                 change ~{~A~^, ~}, and no task is left that could call them.~]~@[ ~:{~A is ~
+                 ~(~S~)~:^, ~}, and stays so, because no task goes on.~]~@[ ~A~]~@[ ~A~]"
             (and valueless (no-fluent-advice valueless))
             (and robots
                  (format nil "~{~A~^, ~} change~:[s~;~]"
                          (mapcar #'fluent-text robots) (rest robots)))
             (and robots (command-advice tasks))
+            (remove-duplicates (remove nil (mapcan #'rest events)) :test #'string= :from-end t)
             (remove-duplicates (mapcar #'fluent-text others) :test #'string=)
             (loop for fluent in states collect (list (fluent-text fluent) (fluent-value fluent)))
             (or (missed-pulses-text tasks) (missed-end-text tasks))

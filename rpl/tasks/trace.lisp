@@ -57,11 +57,12 @@ plan, the name of its robot if the run has several robots" :addition)
   (asker nil t "the cause of the event: a task's number, or another value of *ASKER*" :export))
 (declaim-final trace-entry)
 
-(define-record (issue (:constructor make-issue (name arguments task)))
+(define-record (issue (:constructor make-issue (name arguments task robot)))
   "A command that a task has issued."
   (name nil symbol "the plan function by which a command was issued" :export)
   (arguments '() list "the list of the arguments of the plan function" :export)
-  (task 0 fixnum "the number of the task that issued the command" :export))
+  (task 0 fixnum "the number of the task that issued the command" :export)
+  (robot nil symbol "the name of the robot that the command was issued to" :export))
 
 (define-record (answer (:constructor make-answer (issue error)))
   "The end of a command."

@@ -70,12 +70,14 @@ TRACE-ENTRY; without a trace, they are not evaluated."
 
 ;;; Commands: what tasks ask of others than plans.
 
-(defun note-command (name arguments)
-  "Record in the trace that the running task calls the plan function NAME with ARGUMENTS. Return a
-record of the call for WITH-ANSWER; NIL if no task is running or no trace is kept."
+(defun note-command (name arguments robot)
+  "Record in the trace that the running task calls the plan function NAME with ARGUMENTS for a robot
+with the name ROBOT. Return a record of the call for WITH-ANSWER; NIL if no task is running or no
+trace is kept."
   (let ((task *asker*))
     (when (and (task-p task) *runner* (runner-trace *runner*))
-      (let ((issue (make-issue name (mapcar #'fluent-value arguments) (task-serial task))))
+      (let ((issue (make-issue name (mapcar #'fluent-value arguments) (task-serial task)
+                               robot)))
         (note-event task :command issue
                     (loop for each in (lineage task) collect (forms-under-way (task-frame each))))
         issue))))

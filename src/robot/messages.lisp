@@ -64,7 +64,8 @@ vectors of these, of limited size."
 ;;; Mailboxes.
 
 (define-event *message-hooks*
-  "Functions called when a message has arrived in the mailbox of a robot, with the robot.")
+  "Functions called when a message has arrived in the mailbox of a robot, with the robot, the name
+of the sender, and the tick in which the message was sent.")
 
 ;; Digests of runs without messages are as they were before there were radios.
 (defmethod digest-state ((radio radio) digest)
@@ -112,7 +113,7 @@ the oldest messages, count them, and warn once."
     (setf (radio-mailbox radio)
           (append (nthcdr (max 0 surplus) before) (list entry)))
     (note-last-arrival radio entry (world-tick (robot-world robot)))
-    (call-listeners *message-hooks* robot)))
+    (call-listeners *message-hooks* robot sender tick)))
 
 (defun copied-message (message)
   (if (typep message '(or cons vector)) (copy-argument 'next-message "message" message) message))
