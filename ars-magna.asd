@@ -110,8 +110,8 @@
     :components ((:file "package") (:file "fluents") (:file "interface") (:file "drivers")
                  (:file "under-way") (:file "clashes") (:file "reacting") (:file "forking")
                  (:file "thread") (:file "starting") (:file "outcomes") (:file "commands")
-                 (:file "messages") (:file "runs") (:file "warnings") (:file "on-robot")
-                 (:file "seeing")))
+                 (:file "messages") (:file "choosing") (:file "runs") (:file "warnings")
+                 (:file "on-robot") (:file "seeing")))
    (:module "src" :serial t
     :components ((:file "slots") (:file "faces") (:file "user-package") (:file "editors")
                  (:file "ars"))))

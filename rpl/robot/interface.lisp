@@ -53,7 +53,7 @@ of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SA
    (next-tick nil (or null real (eql :ready))
               "published: the tick at which plans next go on; :READY if at once; or NIL"))
   (:link
-   (origin '() list "a list of drivers, followed by the origin that messages name for their plans")
+   (origin '() list "the origin that messages name for the plans")
    (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
    (told nil t "a cons of the last failure noted in the journal and the remark, or NIL")
    (closing-p nil boolean "the interface is to end")

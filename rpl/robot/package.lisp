@@ -7,7 +7,7 @@
   (:import-from :ars-magna.world
                 #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p
                 #:some-kicker-p #:kicker-test #:kicker-body
-                #:warn-once
+                #:warn-once #:world-robots
                 #:warning-given-p #:record-progress-checked)
   (:import-from :ars-magna.time
                 #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking #:live-p
@@ -60,7 +60,7 @@
                 #:+no-fluent+ #:robot-fluent-p #:plan-backtrace #:operator-called-p
                 #:task-awaiting
                 #:report-end #:agent-lisps-dice #:reseed-agent #:digest-runner
-                #:print-tasks #:find-procedure
+                #:print-tasks #:find-procedure #:procedure-name
                 #:plan-trace #:valve #:make-valve #:valve-losers #:note-command
                 #:with-answer #:runner-in-use #:task-agent #:task-client #:agent-client #:agent-p
                 #:make-agent #:add-agent #:remove-agent #:agents-in-order #:end-tasks-at-once
@@ -69,7 +69,7 @@
                 #:enter #:frame-up #:*step-plans* #:*plan-start-hooks*
                 #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-in-copied-run-p
-                #:call-with-client-still #:owner-text
+                #:call-with-client-still #:owner-text #:robot-name-of-client
                 #:note-plan-trouble #:note-plans-shown #:*realm*
                 #:copy-back-values #:+root+
                 #:realm-sources #:drop-realm-references #:source-realm #:with-owned-home #:entity
