@@ -54,11 +54,10 @@ another thread. Return the interface of the simulation."
                    or after (simulator ~A)."
                   robot (eq (world-map world) (world-map *world*)) robot robot))
     (when (robot-retired robot)
-      (reject-finished-run "No plan can drive ~A any more: ~A.~@[ Use a robot of the run, such as ~
-                            ~(~A~).~]"
-                           robot (robot-retired robot)
-                           (let ((others (remove robot (world-robots world))))
-                             (and others (robot-name (first others))))))))
+      (reject-use "No plan can drive ~A any more: ~A.~@[ Use a robot of the run, such as ~(~A~).~]"
+                  robot (robot-retired robot)
+                  (let ((others (remove robot (world-robots world))))
+                    (and others (robot-name (first others))))))))
 
 (defun plans-must-end-first-p (interface simulation)
   "True if the plans of INTERFACE, of another run, must end before plans can run in SIMULATION. The
