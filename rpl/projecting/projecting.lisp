@@ -32,7 +32,6 @@ and WRONG-ARGUMENT."
       (return-from split-projected-call plan))
     (destructuring-bind (plan . arguments) (plan-with-arguments plan arguments)
       (multiple-value-bind (arguments last-robot) (split-arguments plan arguments)
-        (check-plan-arguments plan arguments)
         (when (and robot last-robot)
           (reject :robot robot "the arguments of the plan end with :robot and a robot"))
         (values plan arguments (or robot last-robot))))))
@@ -53,10 +52,12 @@ Signals UNKNOWN-NAME, WRONG-ARGUMENT and MISUSE."
         (%make-question :operator 'project :task task :interface interface
                         :subject (check-projected-task plan interface (getf options :world))
                         :options options)
-        (%make-question :operator 'project :task task :interface interface
-                        :robot (robot-of-question robot options)
-                        :driver (and interface (null task) (driver-for-plan robot plan))
-                        :plan plan :arguments arguments :options options))))
+        (progn
+          (check-plan-arguments plan arguments)
+          (%make-question :operator 'project :task task :interface interface
+                          :robot (robot-of-question robot options)
+                          :driver (and interface (null task) (driver-for-plan robot plan))
+                          :plan plan :arguments arguments :options options)))))
 
 (defun check-projected-task (task interface world)
   "Return TASK. Signals WRONG-ARGUMENT unless TASK belongs to the plans of INTERFACE. Also signals
