@@ -132,7 +132,7 @@ the robot is in another world than the current one."
                 :kind "robot" :name name
                 :remedy (one-line "Give one robot. Each robot needs a plan of its own: (dolist
 (robot (simulation-robots)) (begin-plan PLAN ... :robot robot)).")))
-        (*simulation*
+        ((and *simulation* (rest (simulation-robots *simulation*)))
          (reject-name "robot in this run" name
                       (mapcar #'robot-name (simulation-robots *simulation*))))
         (t (find-robot name))))
