@@ -23,7 +23,8 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:task-label #:all-tasks #:step-task #:start-trace #:stop-trace
                 #:plan-break-p #:why)
   (:import-from :ars-magna.rpl.tasks
-                #:task-label #:call-handling-trouble #:arguments-misfit-text #:lambda-list-shape
+                #:task-label #:task-client #:calling-task #:robot-name-of-client
+                #:call-handling-trouble #:arguments-misfit-text #:lambda-list-shape
                 #:lambda-list-text
                 #:waiting-parts #:text-of-waits #:advice-on-endless-waits)
   (:import-from :ars-magna.rpl-robot #:rpl-runner

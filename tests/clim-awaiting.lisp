@@ -131,7 +131,8 @@ threads."
 (test awaiting.a-line-that-waits-for-plans-can-answer-what-they-wait-for
   "The plans are held until the thread that waits for them does what it is needed for."
   (in-studio (robot)
-    (let ((interface (ars-magna.rpl-robot::ensure-interface))
+    (let ((interface (ars-magna.rpl-robot::driver-interface
+                      (ars-magna.rpl-robot:driver-for-plan nil)))
           (held (base:make-semaphore "held")) (answered (base:make-semaphore "answered"))
           (done (base:make-semaphore "done")) (simulation (time:current-simulation)))
       (base:start-thread (lambda ()

@@ -29,7 +29,7 @@
 (defun break-text (session break-request)
   (format nil "*BREAK* -> ~A~@[ (in ~A)~]~%~:{  ~2D  ~16A ~A~%~}~
                Type a number. BACKTRACE, PLAN-TREE show where the program is; (...) is Lisp.~%"
-          (break-condition-text (break-request-condition break-request))
+          (break-condition-text break-request)
           (break-thread-text session break-request)
           (loop for restart in (break-request-restarts break-request)
                 for number from 0
@@ -49,13 +49,13 @@
   (let ((console (session-console session)))
     (write-fitted console
                   "*BREAK* -> ~A~@[ (in ~A)~]. It waits until the earlier break is answered.~%"
-                  (break-condition-text (break-request-condition break-request))
+                  (break-condition-text break-request)
                   (break-thread-text session break-request))
     (restore-prompt console)))
 
 (defun break-summary (session break-request)
   "Return one line: the condition of BREAK-REQUEST, and its thread if SESSION has another thread."
-  (let ((words (break-condition-text (break-request-condition break-request))))
+  (let ((words (break-condition-text break-request)))
     (format nil "~A~@[ (in ~A)~]" (subseq words 0 (position #\Newline words))
             (break-thread-text session break-request))))
 

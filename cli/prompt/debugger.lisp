@@ -172,7 +172,8 @@ in the same run, else all sessions. Return NIL if the user ended SESSION."
              (remove-if-not #'can-answer-p (running-sessions))))))
 
 (defun break-request-for-condition (condition sessions)
-  (make-break-request condition (restarts-to-offer condition) (current-thread) sessions))
+  (make-break-request condition (restarts-to-offer condition) (current-thread) sessions
+                      (robot-text-of-calling-plan)))
 
 (defun run-debugger-prompt (session break-request)
   (flet ((read-lines ()

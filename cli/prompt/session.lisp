@@ -6,14 +6,17 @@
           session-recording session-plotter
           *prompt-robot*))
 
-(defstruct (break-request (:constructor make-break-request (condition restarts thread sessions))
+(defstruct (break-request (:constructor make-break-request
+                              (condition restarts thread sessions &optional robot))
                           (:copier nil))
   "A break of a program, which waits in THREAD until the user of one of SESSIONS says how to
-continue. CALL is the function that THREAD is to call next."
+continue. CALL is the function that THREAD is to call next. ROBOT is a text for the robot of the
+plan that has broken, if the run has several robots; else NIL."
   (condition nil :type condition :read-only t)
   (restarts '() :type list :read-only t)
   (thread nil :read-only t)
   (sessions '() :type list)
+  (robot nil :type (or null string) :read-only t)
   (call nil :type (or null function))
   ;; The ways to continue have been shown.
   (told-p nil :type boolean)
@@ -51,11 +54,20 @@ restarts with the same name, include only the innermost."
 (defun own-thread-break-p (break-request)
   (eq (break-request-thread break-request) (current-thread)))
 
-(defun break-condition-text (condition)
-  "Return the text of CONDITION: on one line, except the stack of a plan that has stopped."
-  (if (plan-break-p condition)
-      (escape-controls (condition-text condition))
-      (short-error-text (condition-text condition))))
+(defun robot-text-of-calling-plan ()
+  "Return a text for the robot of the plan that runs in this thread, if the run has several robots;
+else NIL."
+  (let ((task (calling-task)))
+    (and task (robot-text *simulation* (robot-name-of-client (task-client task))))))
+
+(defun break-condition-text (break-request)
+  "Return the text of the condition of BREAK-REQUEST, after the robot of the plan if the run has
+several robots. It is one line, except for the stack of a plan that has stopped."
+  (let* ((condition (break-request-condition break-request)) (text (condition-text condition)))
+    (format nil "~@[~A: ~]~A" (break-request-robot break-request)
+            (if (plan-break-p condition)
+                (escape-controls text)
+                (short-error-text text)))))
 
 (defstruct (break-state (:copier nil))
   "The breaks that wait for the user of the prompt in THREAD. OWN is the break in THREAD itself, or

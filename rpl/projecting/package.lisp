@@ -8,7 +8,7 @@ believes in, to estimate how they may end, and to choose the best.")
   (:import-from :ars-magna.statistics #:wilson-interval)
   (:import-from :ars-magna.world #:*world*)
   (:import-from :ars-magna.time #:*simulation* #:current-simulation #:with-seclusion)
-  (:import-from :ars-magna.robot #:robot-name)
+  (:import-from :ars-magna.robot #:robot-name #:robot-p)
   (:import-from :ars-magna.run #:simulation-messages
                 #:*simulation-variables* #:simulation-tick #:simulation-seed #:simulation-robots
                 #:simulation-participants #:simulation-journal #:simulation-world
@@ -20,6 +20,7 @@ believes in, to estimate how they may end, and to choose the best.")
                 #:find-procedure #:function-designator-p
                 #:fluent-value #:whole-form-text #:frame #:frame-up #:lisp-failure
                 #:lisp-failure-condition #:park
+                #:task-bindings-p #:task-bindings-cells
                 #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:agent-dice #:task-agent #:stop-trace #:task #:task-label #:task-p
                 #:task-result #:task-runner #:task-top #:value #:escape-p #:entity

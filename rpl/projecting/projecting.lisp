@@ -20,25 +20,44 @@ list of a plan and its arguments. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
   "Signal WRONG-ARGUMENT unless PLAN takes the list ARGUMENTS."
   (check-arguments (if (procedure-p plan) plan (find-procedure plan)) arguments))
 
-(defun make-question (task interface plan arguments options &optional robot)
+(defun split-projected-call (plan arguments robot)
+  "Return three values: PLAN, its arguments and its robot. PLAN and ARGUMENTS are as for
+PLAN-WITH-ARGUMENTS; or PLAN is a task. ROBOT is the option :ROBOT of PROJECT. Signals UNKNOWN-NAME
+and WRONG-ARGUMENT."
+  (flet ((reject (name value reason)
+           (reject-argument 'project name value (format nil "none, since ~A" reason))))
+    (when (task-p plan)
+      (when arguments (reject :arguments arguments "a task has its arguments"))
+      (when robot (reject :robot robot "a task has its robot"))
+      (return-from split-projected-call plan))
+    (destructuring-bind (plan . arguments) (plan-with-arguments plan arguments)
+      (multiple-value-bind (arguments last-robot) (split-arguments plan arguments)
+        (when (and robot last-robot)
+          (reject :robot robot "the arguments of the plan end with :robot and a robot"))
+        (values plan arguments (or robot last-robot))))))
+
+(defun robot-of-question (robot options)
+  "Return what a question with OPTIONS keeps for ROBOT, a robot or its name: in a believed world, a
+robot has only its name in common with ROBOT. Signals UNKNOWN-NAME and MISUSE."
+  (cond ((null robot) nil)
+        ((null (getf options :world)) (drivable-robot robot))
+        (t (name-of-robot (fluent-value robot)))))
+
+(defun make-question (task interface plan arguments robot options)
   "Return a question about how PLAN may end. TASK asks it, or is NIL outside of plans. PLAN is a
-task of INTERFACE, a plan for the list ARGUMENTS, or a list of a plan and its arguments. Signals
-UNKNOWN-NAME and WRONG-ARGUMENT."
+task of INTERFACE, or a plan for the list ARGUMENTS and for ROBOT, or NIL for the default robot.
+Signals UNKNOWN-NAME, WRONG-ARGUMENT and MISUSE."
   (let ((options (checked-options 'project options)))
-    (when (and (task-p plan) arguments)
-      (reject-argument 'project :arguments arguments "none, since a task has its arguments"))
     (if (task-p plan)
         (%make-question :operator 'project :task task :interface interface
                         :subject (check-projected-task plan interface (getf options :world))
                         :options options)
-        (destructuring-bind (plan . arguments) (plan-with-arguments plan arguments)
-          (multiple-value-bind (arguments last-robot) (split-arguments plan arguments)
-            (check-plan-arguments plan arguments)
-            (setf robot (or robot last-robot))
-            (%make-question :operator 'project :task task :interface interface
-                            :robot robot
-                            :driver (and interface (null task) (driver-for-plan robot))
-                            :plan plan :arguments arguments :options options))))))
+        (progn
+          (check-plan-arguments plan arguments)
+          (%make-question :operator 'project :task task :interface interface
+                          :robot (robot-of-question robot options)
+                          :driver (and interface (null task) (driver-for-plan robot plan))
+                          :plan plan :arguments arguments :options options)))))
 
 (defun check-projected-task (task interface world)
   "Return TASK. Signals WRONG-ARGUMENT unless TASK belongs to the plans of INTERFACE. Also signals
@@ -69,17 +88,33 @@ WRONG-ARGUMENT if there is a WORLD, because tasks do not exist in believed world
   +parked+)
 
 (defun question-of-plan (task plan arguments options)
-  (let ((question (make-question task (asking-interface task) (fluent-value plan)
-                                 (fluent-value arguments) options)))
-    (when (question-option question :world) (check-no-run-objects question))
-    question))
+  (multiple-value-bind (plan arguments robot)
+      (split-projected-call (fluent-value plan) (fluent-value arguments) nil)
+    (let ((question (make-question task (asking-interface task) plan arguments robot options)))
+      (when (question-option question :world) (check-no-run-objects question))
+      question)))
+
+;; In a rollout of a plan for another robot, the frame of PROJECT binds that robot as ON-ROBOT does,
+;; and keeps the question beside it.
+(defun data-of-rollout (question task)
+  "Return the data of the frame of PROJECT in TASK, in which the plan of QUESTION begins."
+  (if (question-robot question)
+      (bindings-for-robot (question-robot question) task (list (cons 'question question)))
+      question))
+
+(defun question-in-data (data)
+  "Return the question in DATA, a value of DATA-OF-ROLLOUT."
+  (if (task-bindings-p data)
+      (cdr (assoc 'question (task-bindings-cells data)))
+      data))
 
 (define-construct project (plan &key arguments trials horizon seed cost world print robot)
   "Return a projection of PLAN: how it ends in TRIALS rollouts, by default 20. A rollout is a fork
 of the run with its own seed. In the fork, PLAN runs until it has ended or HORIZON ticks have
 passed, by default 600. See PROJECTION-PROBABILITY and others.
   PLAN is a plan procedure or its name, to call with the list ARGUMENTS; or a list of a plan and
-its arguments; or a task. Of a task, the remaining part is projected.
+its arguments; or a task. Of a task, the remaining part is projected. Arguments may end with :ROBOT
+and a robot, as for BEGIN-PLAN; in a plan, PLAN then begins as in ON-ROBOT.
   SEED, an integer, determines the seeds of rollouts. By default they depend on the run's seed and
 the tick.
   COST, a function without arguments, is called in each fork at its end. COST returns a number, or
@@ -91,7 +126,7 @@ that world. Objects of the true run in global variables can be read, but not cha
 PLAN must have a name, and ARGUMENTS must contain no objects of a run.
   PRINT, if true, shows what plans write in rollouts.
   ROBOT, a robot or its name, is what PLAN drives, by default as for BEGIN-PLAN. In a plan, write
-(on-robot (robot) (project ...)) instead.
+:ROBOT at the end of PLAN's arguments instead.
   In a plan, PROJECT waits until all plans rest, and goes on in the same tick; PLAN begins as if
 PROJECT called it. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins as by
 BEGIN-PLAN. The run itself is not affected: its dice are not rolled, and messages and traces of
@@ -105,7 +140,8 @@ McDermott's projection of reactive plans, 1992.)"
                      (check-plan-quote plan form scope)
                      (when robot
                        (reject-clause (text-title) form
-                                      "no :robot in a plan: (on-robot (robot) (project ...))"))
+                                      "no option :robot in a plan: put it after the arguments of ~
+                                       the plan, '(NAME ARGUMENT... :robot ROBOT)"))
                      (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
                                           :seed ,seed :cost ,cost :world ,world :print ,print)
                                    scope))))
@@ -120,10 +156,12 @@ McDermott's projection of reactive plans, 1992.)"
    (answered
     (cond ((eq value :do-it)
            (next inside)
-           (enter-application (question-plan memory) (question-arguments memory) frame))
+           (let ((question memory))
+             (setf memory (data-of-rollout question task))
+             (enter-application (question-plan question) (question-arguments question) frame)))
           (t (values (frame-up frame) value))))
    (inside
-    (note-question-end memory :succeeded value)
+    (note-question-end (question-in-data memory) :succeeded value)
     (at-once ended))
    ;; A rollout goes no further.
    (ended
@@ -131,7 +169,7 @@ McDermott's projection of reactive plans, 1992.)"
     +parked+))
   (:unwind
    (when (in-state-p inside)
-     (note-ending-signal memory signal)
+     (note-ending-signal (question-in-data memory) signal)
      (when (typep signal 'plan-failure)
        (next ended)
        (values t frame nil)))))
@@ -144,7 +182,7 @@ robot that plans drive by default. Signals MISUSE inside a plan's step."
   (let ((interface (if (and (task-p plan) (task-runner plan)
                             (interface-p (runner-client (task-runner plan))))
                        (runner-client (task-runner plan))
-                       (driver-interface (driver-for-plan robot)))))
+                       (driver-interface (driver-for-plan robot plan)))))
     (when (holding-plans-p interface)
       (reject-use "project: a plan is running here. Write PROJECT in the text of the plan itself, ~
                    outside of any lambda."))
@@ -162,14 +200,15 @@ robot that plans drive by default. Signals MISUSE inside a plan's step."
 (defun project-plan (plan &key arguments trials horizon seed cost world print robot)
   "Return a projection of PLAN. This is PROJECT for Lisp code outside of plans. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
-  (let* ((interface (if world nil (interface-to-project plan robot)))
-         (question (make-question nil interface plan arguments
-                                  (list :trials trials :horizon horizon :seed seed :cost cost
-                                        :world world :print print)
-                                  robot)))
-    (when world (check-no-run-objects question))
-    (cond (*rolling-out* (projection-without-rollouts question))
-          (t (first (project-branches question (if world nil (fork-with-question question))))))))
+  (multiple-value-bind (plan arguments robot) (split-projected-call plan arguments robot)
+    (let* ((interface (if world nil (interface-to-project plan robot)))
+           (question (make-question nil interface plan arguments robot
+                                    (list :trials trials :horizon horizon :seed seed :cost cost
+                                          :world world :print print))))
+      (when world (check-no-run-objects question))
+      (cond (*rolling-out* (projection-without-rollouts question))
+            (t (first (project-branches question
+                                        (if world nil (fork-with-question question)))))))))
 
 ;;;; Doing what goes best
 

@@ -44,8 +44,15 @@ rollout, ENDED and RESULT say how the branch or plan on trial has ended."
         ((question-subject question) (task-label (question-subject question) #'whole-form-text))
         (t (let ((plan (question-plan question)))
              (whole-form-text
-              (cons (or (if (procedure-p plan) (procedure-name plan) plan) 'interp-lambda)
-                    (question-arguments question)))))))
+              (append (list (or (if (procedure-p plan) (procedure-name plan) plan)
+                                'interp-lambda))
+                      (question-arguments question)
+                      (and (question-robot question)
+                           (list :robot (name-of-robot (question-robot question))))))))))
+
+(defun name-of-robot (robot)
+  "Return the name of ROBOT, a robot or its name."
+  (if (robot-p robot) (robot-name robot) robot))
 
 (defun note-question-end (question state result)
   "Record, in a rollout, that the branch or plan tried by QUESTION has ended in STATE with RESULT."

@@ -131,7 +131,7 @@ change only runs that it makes. Changes to existing fluents have no effect outsi
     (reject-use "project: the function :world must call its argument, a function, inside of ~
                  (with-simulation ...)."))
   (let* ((question (rollout-start-question scene))
-         (driver (driver-for-plan (question-robot question))))
+         (driver (driver-for-plan (question-robot question) (question-plan question))))
     (run-rollout scene trial seed question (driver-interface driver)
                  (lambda ()
                    (begin-plan-with-driver

@@ -57,11 +57,13 @@
 (defun driver-runner (driver)
   (interface-runner (driver-interface driver)))
 
-(defun plans-owner (interface drivers)
-  "Return the robot that the plans of DRIVERS in INTERFACE drive, or else the run's name."
-  (if (and drivers (null (rest drivers)))
-      (driver-robot (first drivers))
-      (simulation-name (interface-simulation interface))))
+(defun plans-owner (interface)
+  "Return the robot that the plans of INTERFACE drive. Return the name of the run if it has several
+robots, or if its plans drive no robot."
+  (let ((drivers (interface-drivers interface)) (simulation (interface-simulation interface)))
+    (if (and drivers (null (rest drivers)) (null (rest (simulation-robots simulation))))
+        (driver-robot (first drivers))
+        (simulation-name simulation))))
 
 ;;; Which driver.
 
@@ -87,9 +89,12 @@
   "Return the driver of the robot for which the plan of TASK was begun."
   (task-client task))
 
+(defmethod robot-name-of-client ((driver driver))
+  (robot-name (driver-robot driver)))
+
 (defun robot-name-of-plan (task)
   "Return the name of the robot for which the plan of TASK was begun."
-  (robot-name (driver-robot (driver-of-plan task))))
+  (robot-name-of-client (driver-of-plan task)))
 
 (defun default-robot (simulation)
   "Return the robot of SIMULATION that plans drive by default: the only robot, or the robot that the

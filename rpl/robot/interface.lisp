@@ -54,7 +54,7 @@ of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SA
               "published: the tick of the first timer of plans, or NIL; if plans go on before,
 a pair of :READY and this"))
   (:link
-   (origin '() list "a list of drivers, followed by the origin that messages name for their plans")
+   (origin '() list "the origin that messages name for the plans")
    (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
    (told nil t "a cons of the last failure noted in the journal and the remark, or NIL")
    (closing-p nil boolean "the interface is to end")

@@ -37,19 +37,16 @@ without a robot."
   (format nil "a message of ~(~A~), sent at tick ~D"
           (sent-message-sender message) (sent-message-tick message)))
 
-(defun sent-by-p (entry message trace)
-  "True if ENTRY of TRACE is the command that sent MESSAGE. A robot sends only one in a tick."
-  (let ((issue (trace-entry-subject entry)) (tick (sent-message-tick message)))
+(defun sent-by-p (entry message)
+  "True if ENTRY of a trace is the command that sent MESSAGE. A robot sends only one in a tick."
+  (let ((issue (trace-entry-subject entry)))
     (and (eq :command (trace-entry-event entry))
          (eq 'rpl-robot-send (issue-name issue))
          (eq (sent-message-sender message) (issue-robot issue))
-         (< (trace-entry-tick entry) tick)
-         (let ((answer (answer-entry issue trace)))
-           (or (null answer)
-               (and (null (trace-entry-value answer)) (>= (trace-entry-tick answer) tick)))))))
+         (eql (sent-message-tick message) (issue-end-tick issue)))))
 
 (defmethod asker-description ((message sent-message) trace)
-  (let ((entry (find-if (lambda (entry) (sent-by-p entry message trace)) trace :from-end t)))
+  (let ((entry (find-if (lambda (entry) (sent-by-p entry message)) trace :from-end t)))
     (format nil "~A~@[ by ~A~]" (asker-note message)
             (and entry (issue-description (trace-entry-subject entry) trace)))))
 
@@ -98,6 +95,19 @@ for other plans only, so that advice on TASKS is of no use. AWAITED is as for AD
          (format nil "The mailbox of ~(~A~) already has ~D message~:P. Look into it before you ~
                       wait: (if (null (rpl-messages)) (wait-for robot-heard*))."
                  (robot-label robot) count))))
+
+;; A program may send one at any time, so only what waits for the end of the plan is stuck.
+(defun waits-for-message-p (task)
+  "True if TASK waits for a message, its robot has none, and another robot of the run could send
+one."
+  (let ((interface (driver-interface (driver-of-plan task))))
+    (and (rest (simulation-robots (interface-simulation interface)))
+         (some (lambda (fluent)
+                 (let ((driver (driver-of-fluent fluent interface)))
+                   (and driver
+                        (eq fluent (driver-fluent 'robot-heard* driver))
+                        (null (robot-messages (driver-robot driver))))))
+               (fluents-awaited (list task))))))
 
 (defmethod advice-on-event ((client driver) fluent tasks awaited)
   (let ((driver (driver-of-fluent fluent (driver-interface client))))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(bindings-for-robot))
+
 (defun driver-in-plan (robot task)
   "Return the driver of ROBOT, a robot, its name or a fluent with such a value, for TASK."
   (let ((client (runner-client (task-runner task))))
@@ -9,6 +11,11 @@
       (reject-use "on-robot: RUN-PLAN-ALONE runs plans without a robot. RUN-PLAN runs them on a ~
                    robot of a run."))
     (ensure-driver (robot-meant-in-plan robot))))
+
+(defun bindings-for-robot (robot task &optional cells)
+  "Return the data of a frame of TASK in which plans drive ROBOT, and with CELLS, which bind other
+task variables."
+  (make-task-bindings (acons 'driver (driver-in-plan robot task) cells)))
 
 (define-construct on-robot ((robot) &body body)
   "Run BODY in a plan, and return its value. In BODY, the functions with RPL- in their names and the
@@ -24,8 +31,8 @@ with the new fluents. If ROBOT leaves the run, the next command of BODY fails wi
           (body node (body-code body scope)))
   (:steps
    (begin
-    (let ((driver (driver-in-plan (funcall robot environment) task)))
+    (let ((bindings (bindings-for-robot (funcall robot environment) task)))
       (next inside)
-      (setf memory (make-task-bindings (list (cons 'driver driver))))
+      (setf memory bindings)
       (enter body environment frame)))
    (inside (values (frame-up frame) value))))

@@ -7,7 +7,7 @@
   (:import-from :ars-magna.world
                 #:world-map #:*world* #:remaining-capacity #:world-has-kickers-p
                 #:some-kicker-p #:kicker-test #:kicker-body
-                #:warn-once
+                #:warn-once #:world-robots
                 #:warning-given-p #:record-progress-checked)
   (:import-from :ars-magna.time
                 #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking #:live-p
@@ -62,7 +62,7 @@
                 #:plan-backtrace #:operator-called-p
                 #:task-awaiting
                 #:report-end #:agent-lisps-dice #:reseed-agent #:digest-runner
-                #:print-tasks #:find-procedure
+                #:print-tasks #:find-procedure #:procedure-name
                 #:plan-trace #:valve #:make-valve #:valve-losers #:note-command
                 #:with-answer #:runner-in-use #:task-agent #:task-client #:agent-client #:agent-p
                 #:make-agent #:add-agent #:remove-agent #:agents-in-order #:slices-spent
@@ -72,7 +72,7 @@
                 #:enter #:frame-up #:*step-plans* #:*plan-start-hooks*
                 #:start-trace
                 #:task-runner #:leave-plan #:runner-client #:client-in-copied-run-p
-                #:call-with-client-still #:owner-text
+                #:call-with-client-still #:owner-text #:robot-name-of-client
                 #:note-plan-trouble #:note-plans-shown #:*realm*
                 #:copy-back-values #:+root+
                 #:realm-sources #:drop-realm-references #:source-realm #:with-owned-home #:entity
@@ -82,7 +82,7 @@
                 #:part-of-p #:lineage #:frame-chain #:frame-node #:node-form #:current-form
                 #:task-level #:evaporating-p #:reasons #:end-with-signal #:remove-waiting-task
                 #:task-frame #:task-name
-                #:trace-entry-event #:trace-entry-subject #:trace-entry-tick #:trace-entry-value
-                #:issue-name #:issue-robot #:issue-description #:answer-entry #:asker-description
+                #:trace-entry-event #:trace-entry-subject
+                #:issue-name #:issue-robot #:issue-end-tick #:issue-description #:asker-description
                 #:twin-here
                 #:note-outside-call #:current-counterpart #:advice-on-call #:advice-on-goal))

@@ -2,59 +2,11 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*on-plan-failure* ensure-interface begin-plan-with-driver driver-for-plan
-          split-arguments
-          note-robot-commanded pass-until final-state-of-task
-          plan-ending-p))
+(export '(*on-plan-failure* begin-plan-with-driver pass-until final-state-of-task plan-ending-p))
 
 (addition *plan-limit*)
 (defparameter *plan-limit* 100000
   "The number of ticks after which RUN-PLAN gives up a plan in a headless run.")
-
-(defun robot-to-drive ()
-  "Return the robot of the current simulation that plans drive by default: the only robot, or the
-robot that the prompt commands. Signals MISUSE if several robots are possible, or the run is over."
-  (check-not-over (current-simulation))
-  (let ((robots (simulation-robots (current-simulation))))
-    (or (default-robot (current-simulation))
-        (reject-use "There are ~D robots here. Choose the robot to drive: (rpl-init-robot ~
-                     ~:[ROBOT~;~:*~(~A~)~]) before the plan, or :robot ROBOT after the arguments ~
-                     of the plan."
-                    (length robots)
-                    (and robots (robot-name (first robots)))))))
-
-(defun note-robot-commanded ()
-  "Record that the prompt of this thread commands another robot from now on. Plans that begin later
-drive that robot, even after an RPL-INIT-ROBOT."
-  (let ((interface (usable-interface)))
-    (when interface (setf (interface-default interface) nil))))
-
-(defun driver-for-plan (robot)
-  "Return the driver for a plan that begins: of ROBOT or, if ROBOT is NIL, of the robot that the
-calling plan drives, or of the robot that plans drive by default."
-  (cond (robot (ensure-driver (robot-meant-in-plan robot)))
-        ((driver-here) (required-driver))
-        (t (ensure-driver (robot-to-drive)))))
-
-(defun ensure-interface ()
-  "Return the interface of the current run. Make a driver for the robot that plans drive by default,
-if there is none. Signals MISUSE if several robots are possible."
-  (driver-interface (driver-for-plan nil)))
-
-;;; A plan may take :ROBOT itself.
-
-(defun plan-takes-robot-p (plan)
-  "True if PLAN, a plan procedure or its name, has a keyword parameter :ROBOT."
-  (let* ((procedure (if (procedure-p plan) plan (find-procedure plan)))
-         (keys (shape-keys (lambda-list-shape (procedure-lambda-list procedure)))))
-    (and (listp keys) (member :robot keys))))
-
-(defun split-arguments (plan arguments)
-  "Return two values: ARGUMENTS, given for PLAN, without a final :ROBOT and its value; the value."
-  (let ((end (last arguments 2)))
-    (if (and (rest end) (eq :robot (first end)) (not (plan-takes-robot-p plan)))
-        (values (ldiff arguments end) (second end))
-        (values arguments nil))))
 
 (defun begin-plan-for (robot plan arguments)
   (begin-plan-with-driver (ensure-driver robot) plan arguments #'identity))
@@ -96,7 +48,7 @@ as ticks pass in a headless run, and in the plans' thread in a live run. ARGUMEN
 Without it, PLAN drives the robot of the calling plan or, outside of plans, the robot that RUN-PLAN
 would choose. Signals UNKNOWN-NAME."
   (multiple-value-bind (arguments robot) (split-arguments plan arguments)
-    (let ((driver (driver-for-plan robot)))
+    (let ((driver (driver-for-plan robot plan)))
       (prog1 (begin-plan-with-driver driver plan arguments #'identity)
         (warn-if-no-ticks-pass plan driver)))))
 
@@ -227,7 +179,7 @@ RUN-PLAN ends a plan that is not over when RUN-PLAN returns or is aborted. But a
 run continues in the run that replaces the rewound run. Signals UNKNOWN-NAME; and MISUSE, for
 example if the run is over before the plan begins."
   (multiple-value-bind (arguments robot) (split-arguments plan arguments)
-    (run-plan-with-driver (driver-for-plan robot) plan arguments)))
+    (run-plan-with-driver (driver-for-plan robot plan) plan arguments)))
 
 (defun run-plan-with-driver (driver plan arguments)
   "Run PLAN with the list ARGUMENTS for DRIVER, and return what RUN-PLAN returns."
@@ -317,22 +269,29 @@ run of INTERFACE in a rewind."
   (let ((client (and (task-agent task) (task-client task))))
     (if client (current-counterpart client task) task)))
 
+(defun end-all-plans (robot)
+  "End the plans of ROBOT or, if ROBOT is NIL, all plans of the run. There may be none."
+  (let* ((interface (usable-interface))
+         (driver (and robot interface (find-driver robot interface))))
+    (cond (driver (end-plans-of-interface interface driver))
+          (robot nil)
+          (interface (end-plans-of-interface interface nil))
+          (*simulation* (check-not-over *simulation*))
+          (t (reject-without-robot)))))
+
 (addition end-plan)
 (defun end-plan (task &key robot)
   "End the plan TASK. If TASK is :ALL, end all plans of the run or, if ROBOT is given, all that were
 begun for this robot, which may be given by its name. Their commands in progress are interrupted,
 except those of cleanups. Lisp code of a live plan that keeps the plans' thread is aborted. Any
 thread may end a TASK; a task of another simulation ends when that simulation goes on. A TASK that
-is over stays as it is. Returns nothing. Signals WRONG-ARGUMENT; UNKNOWN-NAME; and MISUSE if no plan
-can run here, or if the run was rewound to a tick before TASK began."
+is over stays as it is. Returns nothing. Signals WRONG-ARGUMENT; UNKNOWN-NAME; and MISUSE without a
+run, if ROBOT is not in the run, or if the run was rewound to a tick before TASK began."
   (check-argument end-plan task (or (eq task :all) (task-p task))
                   "a task, as begin-plan returns, or :ALL")
   (check-argument end-plan robot (or (null robot) (eq task :all)) "NIL unless TASK is :ALL")
   (cond ((not (eq task :all)) (end-task (task-in-current-run task)))
-        (robot (let* ((robot (robot-meant-in-plan robot)) (interface (usable-interface))
-                      (driver (and interface (find-driver robot interface))))
-                 (when driver (end-plans-of-interface interface driver))))
-        (t (end-plans-of-interface (required-interface) nil)))
+        (t (end-all-plans (and robot (drivable-robot robot)))))
   (values))
 
 ;;; The name of a plan that is not quoted is a variable to Lisp.

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(*commanded-robot-hook*))
+(export '(*commanded-robot-hook* drivable-robot))
 
 (defun end-plans-in-this-thread (interface closed-p &optional (closing interface))
   "End the plans of CLOSING, which is INTERFACE or a driver in it, in this thread. An interrupt ends
@@ -52,7 +52,12 @@ another thread. Return the interface of the simulation."
                    another map~;but in another world of the same map. Put it into the list of ~
                    robots of this run~]. Plans can drive it inside of (with-simulation (~A) ...), ~
                    or after (simulator ~A)."
-                  robot (eq (world-map world) (world-map *world*)) robot robot))))
+                  robot (eq (world-map world) (world-map *world*)) robot robot))
+    (when (robot-retired robot)
+      (reject-use "No plan can drive ~A any more: ~A.~@[ Use a robot of the run, such as ~(~A~).~]"
+                  robot (robot-retired robot)
+                  (let ((others (remove robot (world-robots world))))
+                    (and others (robot-name (first others))))))))
 
 (defun plans-must-end-first-p (interface simulation)
   "True if the plans of INTERFACE, of another run, must end before plans can run in SIMULATION. The
@@ -120,10 +125,31 @@ the robot is in another world than the current one."
     (init-robot robot t)
     robot))
 
+(defun reject-robot-for-plan (name)
+  "Signal UNKNOWN-NAME: NAME was given instead of a robot or its name."
+  (cond ((or (consp name) (eq name :all))
+         (error 'unknown-name
+                :kind "robot" :name name
+                :remedy (one-line "Give one robot. Each robot needs a plan of its own: (dolist
+(robot (simulation-robots)) (begin-plan PLAN ... :robot robot)).")))
+        ((and *simulation* (rest (simulation-robots *simulation*)))
+         (reject-name "robot in this run" name
+                      (mapcar #'robot-name (simulation-robots *simulation*))))
+        (t (find-robot name))))
+
 (defun robot-meant-in-plan (robot)
   "Return the robot that ROBOT, a robot, its name or a fluent with such a value, means."
   (let ((named (fluent-value robot)))
-    (if (robot-p named) named (find-robot named))))
+    (cond ((robot-p named) named)
+          ((and (typep named '(or symbol string)) (find-robot named nil)))
+          (t (reject-robot-for-plan named)))))
+
+(defun drivable-robot (robot)
+  "Return the robot that ROBOT means, as ROBOT-MEANT-IN-PLAN. Signals UNKNOWN-NAME; and MISUSE if
+plans cannot drive that robot in the current run."
+  (let ((robot (robot-meant-in-plan robot)))
+    (check-world-to-drive robot)
+    robot))
 
 (defun ensure-driver (robot)
   "Return the driver of ROBOT, a robot of the current run. Make a driver if there is none."
@@ -189,11 +215,10 @@ return true. No other thread may touch the plans meanwhile."
     (and drivers (null (rest drivers)) (driver-robot (first drivers)))))
 
 (defmethod participant-origin ((interface interface))
-  (let ((drivers (interface-drivers interface)) (made (interface-origin interface)))
-    (rest (if (and made (eq drivers (first made)))
-              made
-              (setf (interface-origin interface)
-                    (list drivers "the plans of " (plans-owner interface drivers)))))))
+  (let ((owner (plans-owner interface)) (made (interface-origin interface)))
+    (if (eq owner (second made))
+        made
+        (setf (interface-origin interface) (list "the plans of " owner)))))
 
 ;; If plans have a thread, only that runs them: it may be waiting for the owner to answer it.
 (defmethod participant-after-tick ((interface interface) simulation)

@@ -167,7 +167,7 @@ Do nothing if the start of this thread was given up."
                                    interface (lambda () (run-plans-thread interface)))))
                  (signal-semaphore ended))))
            (name (control)
-             (format nil control (plans-owner interface (interface-drivers interface)))))
+             (format nil control (plans-owner interface))))
       (let ((thread (start-thread #'run (name "plans of ~A"))))
         (swap-if-eq (interface-thread interface) :starting thread)
         (start-thread (lambda ()

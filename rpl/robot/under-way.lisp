@@ -138,6 +138,11 @@ time is carried out first, and a command in the background goes on."
                             (remove :set settings :key #'first :test-not #'eq)
                             (settings-to-apply settings)))))))
 
+(defun note-end-in-trace (action err)
+  (let ((issue (action-issue action)))
+    (when (and issue (null err))
+      (setf (issue-end-tick issue) (simulation-tick (driver-simulation (action-driver action)))))))
+
 (defun post-answer (driver action err results)
   "In the simulator's thread, post an answer to ACTION (ERR and RESULTS) to plans of DRIVER,
 unless the plans are about to end because their robot is gone."
@@ -149,7 +154,9 @@ unless the plans are about to end because their robot is gone."
           (add-answer answer driver)
           (post-entry (driver-runner driver) (lambda () (apply-answer answer driver))
                       (driver-agent driver)))
-        (when (answer-last-p answer) (setf (action-over-p action) t))))))
+        (when (answer-last-p answer)
+          (note-end-in-trace action err)
+          (setf (action-over-p action) t))))))
 
 (defun make-action-continuation (driver action)
   (setf (action-continuation action)

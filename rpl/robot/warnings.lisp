@@ -172,6 +172,7 @@ the error."
   "Return the parts of TASK, a plan of INTERFACE, that wait in vain; NIL if TASK may go on."
   (let ((parts (waiting-parts task)))
     (and (notany #'waits-on-purpose-p parts)
+         (notany #'waits-for-message-p parts)
          (or (every #'waits-for-robot-only-p parts)
              (not (others-may-set-fluents-p interface)))
          parts)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.seeing)
 
-(export '(bar bar-label bars span answer-entry))
+(export '(bar bar-label bars span))
 
 ;;; All of these take a task, over or not, or the number of one, and its runner if that is not the
 ;;; one in use; and signal MISUSE where no trace was kept.
@@ -71,7 +71,6 @@ default the task's, or else the one in use. Signals MISUSE if no trace was kept.
   (mapcar #'trace-entry-subject (trace-of which :event :failure :runner runner)))
 
 (defun answer-entry (issue trace)
-  "Return the last entry of TRACE that is an answer to ISSUE, or NIL."
   (find-if (lambda (entry)
              (and (eq :answer (trace-entry-event entry)) (eq issue (trace-entry-subject entry))))
            trace :from-end t))

@@ -183,7 +183,13 @@ the failure as steps that would take as long, so that a plan that only fails use
 
 (defun report-abort (runner)
   (let ((task (runner-current runner)))
-    (error-set (task-label (task-top task)) " was aborted at " (form-text (task-form task)))))
+    (about-plan (task)
+      (error-set (task-label (task-top task)) " was aborted at " (form-text (task-form task))))))
+
+(defun report-break-in-step (condition runner)
+  (let ((task (runner-current runner)))
+    (about-plan (task)
+      (report-break condition (list (task-label task))))))
 
 (defun repair-after-exit (runner)
   "Repair RUNNER after a non-local exit from a step. The plan that took the step ends."
@@ -266,7 +272,7 @@ the trouble it met, and whether the step may have stopped inside the simulator's
                        ((typep condition 'serious-condition)
                         (setf trouble condition)
                         (fail))
-                       (t (report-break condition (list (task-label (runner-current runner))))
+                       (t (report-break-in-step condition runner)
                           (continue-in-user-code condition)
                           (end)))))
         ;; Each step of each task comes by here, so nothing is allocated.

@@ -134,14 +134,17 @@ matches Lisp errors; otherwise NIL."
 
 (defun report-failure (failure &optional awaited-p)
   "Queue an error message about FAILURE, the failure of a plan. The message has the place and task
-of the failure, the expressions in progress, and the Lisp backtrace of an error. If AWAITED-P is
-true, the caller also learns of the failure."
+of the failure, the expressions in progress, and the Lisp backtrace of an error. In a run of several
+robots, a USER-CODE-ERROR names *REPORTED-ROBOT*. If AWAITED-P is true, the caller also learns of
+the failure."
   (let ((text (with-output-to-string (stream) (write-failure-report failure stream))))
     (if awaited-p
         (queue-message (make-message :error (list text) :told-p (not (typep failure 'lisp-failure)))
                        *message-queue*)
         (queue-user-error failure
-                          (format nil "The plan ~A failed: ~A" (first (failure-task-path failure))
+                          (format nil "The plan ~A~@[ of ~A~] failed: ~A"
+                                  (first (failure-task-path failure))
+                                  (robot-text (funcall *get-reporting-run*) *reported-robot*)
                                   (brief-failure-text failure))
                           text))))
 

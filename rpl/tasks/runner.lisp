@@ -5,7 +5,8 @@
 (export '(*runaway-limit* plan-runner runner-agent agent-of add-agent remove-agent task-client
           counted-steps runner-steps runner-blocks plan-runner-tasks plan-runner-tick agent-note
           agent-tasks client-in-copied-run-p calling-agent
-          call-with-client-still owner-text note-plan-trouble note-plans-shown all-tasks
+          call-with-client-still owner-text robot-name-of-client about-plan note-plan-trouble
+          note-plans-shown all-tasks
           task-numbered
           note-outside-call current-counterpart))
 
@@ -70,6 +71,18 @@ traces and pictures. Return NIL if there is only one owner.")
   (:method (client)
     (declare (ignore client))
     nil))
+
+(defgeneric robot-name-of-client (client)
+  (:documentation "Return the name of the robot for which the plans of CLIENT, an agent's client,
+run; NIL without a robot.")
+  (:method (client)
+    (declare (ignore client))
+    nil))
+
+(defmacro about-plan ((task) &body body)
+  "Run BODY. Messages queued in BODY are about the robot for which the plan of TASK runs."
+  `(let ((*reported-robot* (robot-name-of-client (task-client ,task))))
+     ,@body))
 
 (defgeneric call-with-client-still (client function)
   (:documentation "Call FUNCTION while no plan of CLIENT runs, and return the value of FUNCTION.")

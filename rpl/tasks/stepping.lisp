@@ -84,8 +84,9 @@ the running task wait until then."
 (defun warn-of-slow-step (task frame seconds)
   (let ((form (current-form (frame-node frame) frame)))
     (when (first-warning-p form (task-runner task))
-      (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0)
-                   " s without a pause: " (form-text form) " in " (task-label task)))))
+      (about-plan (task)
+        (warning-set "A plan's Lisp code ran for " (/ (round seconds 0.001) 1000.0)
+                     " s without a pause: " (form-text form) " in " (task-label task))))))
 
 (defun clock-seconds (runner)
   "Return the time on RUNNER's clock, in seconds, or NIL without a clock."

@@ -62,7 +62,9 @@ plan, the name of its robot if the run has several robots" :addition)
   (name nil symbol "the plan function by which a command was issued" :export)
   (arguments '() list "the list of the arguments of the plan function" :export)
   (task 0 fixnum "the number of the task that issued the command" :export)
-  (robot nil symbol "the name of the robot that the command was issued to" :export))
+  (robot nil symbol "the name of the robot that the command was issued to" :export)
+  (end-tick nil (or null real) "the tick in which the command ended without an error, or NIL"
+            :writable :export))
 
 (define-record (answer (:constructor make-answer (issue error)))
   "The end of a command."

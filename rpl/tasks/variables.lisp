@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(*calling-task* calling-task install-task-variable make-task-bindings task-variable
-          task-variable-p))
+(export '(*calling-task* calling-task install-task-variable make-task-bindings task-bindings-p
+          task-variable task-variable-p))
 
 ;;; All tasks share the thread and its special variables. A task variable is sought from the calling
 ;;; task outwards: in its frames (those that bind variables have TASK-BINDINGS as DATA), in what it
@@ -11,7 +11,7 @@
 
 (define-record (task-bindings (:constructor make-task-bindings (cells)))
   "The data of a frame that binds task variables. CELLS is a list of conses (name . value)."
-  (cells '() list))
+  (cells '() list "an alist from variables to their values" :export))
 (declaim-final task-bindings)
 
 (defvar *task-variable-defaults* (make-hash-table :test 'eq :synchronized t)

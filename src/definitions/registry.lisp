@@ -73,7 +73,8 @@ strings and symbols" :writable))
     (when (and colon (plusp colon))
       (let* ((prefix (subseq name 0 colon))
              (package (or (find-package prefix) (find-package (string-upcase prefix))))
-             (name (string-left-trim ":" (subseq name colon))))
+             ;; The name itself may begin with a colon, too.
+             (name (subseq name (+ colon (if (eql colon (search "::" name)) 2 1)))))
         (and package
              (or (find-symbol name package) (find-symbol (string-upcase name) package)))))))
 

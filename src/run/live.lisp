@@ -113,8 +113,8 @@ robots of one name in different packages, only warn."
 
 (defun simulation-to-start (world seed journal ghosts)
   "Return the simulation of WORLD that is to run live: a new one if the last is over, was live, has
-passed ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the dice. If GHOSTS is
-true, robots have no bodies."
+passed ticks, or keeps no journal although JOURNAL is true. SEED, if given, seeds the dice. If
+GHOSTS is true, robots have no bodies."
   (let* ((simulation (world-simulation world)) (kept (simulation-journal simulation))
          (startable-p (startable-p simulation journal)))
     (unless ghosts (check-world-robots-apart world startable-p))
