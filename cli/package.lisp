@@ -27,7 +27,7 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:call-handling-trouble #:arguments-misfit-text #:lambda-list-shape
                 #:lambda-list-text
                 #:waiting-parts #:text-of-waits #:advice-on-endless-waits)
-  (:import-from :ars-magna.rpl-robot #:rpl-runner
+  (:import-from :ars-magna.rpl-robot #:rpl-runner #:waits-for-message-p
                 #:plan-ending-p #:begin-plan #:end-plan #:plans #:print-plans
                 #:call-with-plans-in-use #:*commanded-robot-hook* #:note-robot-commanded)
   (:import-from :ars-magna.rpl-robot #:*trace-plans* #:all-fluent-variables

@@ -233,3 +233,17 @@
       (run:run-ticks 5)
       (run:save-journal file)
       (is (= (run:state-digest) (nth-value 1 (run:replay (run:load-journal file))))))))
+
+;;; Projections beside a plan that never waits.
+
+(test project.beside-a-plan-that-never-waits-tells-of-its-own-plan
+  (let ((rpl:*runaway-limit* 2000))
+    (with-three (:seed 1)
+      (driver:begin-plan (rpl:interp-lambda () (loop (random 5))) :robot ben)
+      (flet ((reasons (plan)
+               (ars-magna.rpl-projecting:projection-failures
+                (ars-magna.rpl-projecting:project-plan plan :trials 2 :horizon 60))))
+        (is (equal '() (reasons '(drive-metres 2 :robot ada))))
+        (driver:end-plan :all)
+        (is (equal '((:runaway . 2))
+                   (reasons (list (rpl:interp-lambda () (loop (random 5))) :robot 'ada))))))))

@@ -339,6 +339,17 @@
       (driver:end-plan :all)
       (run:stop-clock time:*simulation*))))
 
+(test live.time-passes-while-a-plan-computes
+  (with-three ()
+    (run:start-clock time:*simulation* :rate :free)
+    (unwind-protect
+         (let ((task (driver:begin-plan (rpl:interp-lambda ()
+                                          (loop (when (< 30 (rpl:plan-time)) (return :polled))))
+                                        :robot ada)))
+           (awaiting (eq :polled (rpl:task-result task))))
+      (driver:end-plan :all)
+      (run:stop-clock time:*simulation*))))
+
 (test robots.that-leave-let-on-robot-fail
   (with-own-definitions ()
     (eval '(world:defmap fold (20 20)))

@@ -145,10 +145,12 @@ waits for in vain, and what could be done."
 
 (defun stuck-plan-texts (runner task awaited-p)
   "If no plan of RUNNER can ever continue, return a list of two texts: what TASK waits for, and what
-could be done. Otherwise return NIL. AWAITED-P is true if the session waits for the end of TASK.
-Call this function while no plan reacts."
-  (when (and (not (task-over-p task)) (plan-deadlocked-p runner))
-    (let ((tasks (waiting-parts task)))
+could be done. Otherwise return NIL. AWAITED-P is true if the session waits for the end of TASK. If
+not, TASK may wait for a message. Call this function while no plan reacts."
+  (let ((tasks (and (not (task-over-p task)) (waiting-parts task))))
+    (when (and (not (task-over-p task))
+               (plan-deadlocked-p runner)
+               (or awaited-p (notany #'waits-for-message-p tasks)))
       (list (text-in-user-syntax (lambda (tasks)
                                    (format nil "waits for ~A"
                                            (or (text-of-waits tasks) "what cannot come")))

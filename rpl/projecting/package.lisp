@@ -23,7 +23,8 @@ believes in, to estimate how they may end, and to choose the best.")
                 #:task-bindings-p #:task-bindings-cells
                 #:plan-failure #:counted-steps #:procedure #:procedure-name #:procedure-p
                 #:runner-client #:agent-dice #:task-agent #:stop-trace #:task #:task-label #:task-p
-                #:task-result #:task-runner #:task-top #:value #:escape-p #:entity
+                #:task-result #:task-runner #:task-state #:task-top #:all-tasks #:plan-runner-tasks
+                #:value #:escape-p #:entity
                 #:*default-interface* #:*realm* #:fork-realm)
   (:import-from :ars-magna.trails #:update-trails #:trails-to-ways #:save-picture-of-ways)
   (:import-from :ars-magna.display #:take-snapshot #:picture-kind))

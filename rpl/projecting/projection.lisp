@@ -19,7 +19,7 @@ QUESTION awaits its answer; rollouts fork it. Without MOMENT, they begin in a be
   (trial 0 fixnum "the number of the trial")
   (seed 0 integer "the integer from which all chance in the rollout came" :addition)
   (state :limit keyword "how the rollout ended: :succeeded, :failed, :evaporated, :deadlock,
-:stopped; :limit, if its horizon came first; or :runaway, if plans took a million steps in a tick
+:stopped; :limit, if its horizon came first; or :runaway, if the plan took a million steps in a tick
 without waiting" :addition)
   (result nil t "a value or a failure")
   (ticks 0 real "how many ticks the rollout took" :addition)

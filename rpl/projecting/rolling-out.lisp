@@ -37,8 +37,8 @@ is the option whose function signalled CONDITION, or NIL."
 (defun run-question-to-end (question interface begin over)
   "Call BEGIN, which starts the plan or branch of QUESTION and returns the task to watch or NIL. Let
 ticks of the current simulation pass until the plan or branch has ended, or the function OVER,
-called after each tick, returns a state. Return four values: the state, the result, the cost, and
-the option whose function signalled an error, or NIL."
+called with the plan after each tick, returns a state. Return four values: the state, the result,
+the cost, and the option whose function signalled an error, or NIL."
   (handler-case
       (let* ((last (+ (simulation-tick) (question-option question :horizon)))
              (task (funcall begin))
@@ -47,21 +47,28 @@ the option whose function signalled an error, or NIL."
                                 ;; The plan that asked may not wait for that any more.
                                 (when (and *current-question* (obsolete-wish-p *current-question*))
                                   (throw 'abandoned nil))
-                                (or (funcall over)
+                                (or (funcall over (or task (task-top (wish-task question))))
                                     (final-state-of-question task question interface)))
                               last)))
         (values-with-cost question how (if task (task-result task) (question-result question))))
     (error (condition) (failed-rollout-values condition))))
 
-;;; A plan that never waits would take a million steps in each tick, to no use.
+;;; A plan that never waits would take a million steps in each tick, to no use. If another plan
+;;; beside it is the one that never waits, the rollout goes on, though slowly.
+
+(defun only-plan-ready-p (plan runner)
+  (flet ((ready-p (plan) (find :ready (all-tasks plan) :key #'task-state)))
+    (and (ready-p plan)
+         (notany #'ready-p (remove plan (plan-runner-tasks runner))))))
 
 (defun runaway-test (runner)
-  "Return a function that returns :RUNAWAY if the plans of RUNNER have taken at least
-*RUNAWAY-LIMIT* steps since the last call of the function."
+  "Return a function of a plan of RUNNER. It returns :RUNAWAY if, since its last call, at least
+*RUNAWAY-LIMIT* steps were taken, and the plan is the only one that could go on at once."
   (let ((steps (counted-steps runner)))
-    (lambda ()
+    (lambda (plan)
       (let ((before (shiftf steps (counted-steps runner))))
-        (when (<= *runaway-limit* (- steps before)) :runaway)))))
+        (when (and (<= *runaway-limit* (- steps before)) (only-plan-ready-p plan runner))
+          :runaway)))))
 
 (defun run-rollout (scene trial seed question interface begin)
   "Run the rollout number TRIAL of SCENE, with SEED, in the current run. Return the rollout. BEGIN
@@ -73,9 +80,9 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
          (trails '()))
     (multiple-value-bind (how result cost broken)
         (run-question-to-end question interface begin
-                             (lambda ()
+                             (lambda (plan)
                                (setf trails (update-trails (current-simulation) trails))
-                               (funcall runaway)))
+                               (funcall runaway plan)))
       (make-rollout scene trial seed how result (- (simulation-tick) start) cost
                     (- (counted-steps runner) steps)
                     (trails-to-ways trails trial (outcome-word how))

@@ -44,6 +44,7 @@ of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SA
             "the drivers of robots that plans drive, the newest first; replaced as a whole")
    (default nil t "the driver of the last RPL-INIT-ROBOT, or NIL")
    (tick-wanted-p nil boolean "the plans are to go on with the next tick")
+   (computing-p nil boolean "in a live run, tasks have used their slices since all tasks waited")
    (ends-requested '() t "the plans whose end was requested")
    (wishes '() list "the wishes of tasks, served while all plans rest, the oldest first" :export)
    (wishes-served 0 fixnum "how many wishes have been served in a tick")
@@ -52,7 +53,7 @@ of the next plan on. Each event takes some 50 octets. See PLAN-TRACE, WHY and SA
    (eras '() list "the eras of tasks, the newest first; see forking.lisp")
    (next-tick nil (or null real (cons (eql :ready) (or null real)))
               "published: the tick of the first timer of plans, or NIL; if plans go on before,
-a pair of :READY and this"))
+a pair of :READY and the tick that they want, or NIL"))
   (:link
    (origin '() list "the origin that messages name for the plans")
    (awaited '() list "the plans that RUN-PLAN waits for; an atomic list")
@@ -87,13 +88,23 @@ a pair of :READY and this"))
   "True if this thread holds the plans of INTERFACE, to let them react or to look at them."
   (and (member interface *held-interfaces* :test #'eq) t))
 
+(defun next-tick-wanted (interface runner)
+  "Return the tick that the run must reach for plans of INTERFACE to go on, or NIL. A plan that has
+computed for long wants the next tick, as time passes while plans compute."
+  (let ((tick (next-wake-time runner))
+        (next (and (interface-computing-p interface)
+                   (1+ (simulation-tick (interface-simulation interface))))))
+    (if (and tick next) (min tick next) (or tick next))))
+
 (defun publish-next-tick (interface)
   "Tell other threads when the plans of INTERFACE, which this thread holds, next go on."
   (let ((runner (interface-runner interface)))
     (setf (interface-next-tick interface)
-          (and runner
-               (let ((tick (next-wake-time runner)))
-                 (if (runner-idle-p runner) tick (cons :ready tick)))))))
+          (cond ((null runner) nil)
+                ((runner-idle-p runner)
+                 (setf (interface-computing-p interface) nil)
+                 (next-wake-time runner))
+                (t (cons :ready (next-tick-wanted interface runner)))))))
 
 (defun call-holding-plans (function interface)
   "This thread has locked INTERFACE. Call FUNCTION, interruptibly, as the holder of its plans."
@@ -118,6 +129,14 @@ plans of INTERFACE, do not wait; return NIL and false."
 thread may call this function."
   (let ((published (interface-next-tick interface)))
     (if (consp published) (cdr published) published)))
+
+(defun wants-tick-p (interface tick)
+  "True if plans of INTERFACE want the run to go on from TICK. Any thread may call this function. At
+the rate :FREE, ticks do not run ahead of plans that compute."
+  (let ((published (interface-next-tick interface)))
+    (if (consp published)
+        (and (cdr published) (> (cdr published) tick))
+        published)))
 
 (defun plans-ready-p (interface)
   "True if plans of INTERFACE are ready, have posts to apply, or wait for time. For any thread."

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
+(export '(waits-for-message-p))
+
 (define-fluents robot
   (robot-sent* "Pulsed when the robot has sent a message, or was interrupted." :addition)
   (robot-radio-error* "The error code of the last ROBOT-SEND to end; NIL after success." :addition)

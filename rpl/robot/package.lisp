@@ -35,7 +35,8 @@
                 #:participant-place #:simulation-participants #:fork-p #:store-environment
                 #:environment-of #:*rewind-hooks* #:*rewound-end-hooks*
                 #:counterpart-in-current-run #:latest-successor
-                #:await-postponed-fork #:record-outside-act
+                #:fork-postponed-p #:await-postponed-fork
+                #:record-outside-act
                 #:simulation-past #:simulation-journal #:add-remark #:remove-remark)
   (:import-from :ars-magna.rpl
                 #:create-fluent #:create-fluent-vector #:declare-fluent-variable

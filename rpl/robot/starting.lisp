@@ -242,7 +242,7 @@ return true. No other thread may touch the plans meanwhile."
 
 ;; What was left ready by a thread that has ended from outside waits for the next tick.
 (defmethod participant-busy-p ((interface interface) simulation)
-  (cond ((plans-thread interface) (wake-tick interface))
+  (cond ((plans-thread interface) (wants-tick-p interface (simulation-tick simulation)))
         ((plans-ready-p interface))
         ((wish-to-serve interface) t)
         ((live-p simulation)

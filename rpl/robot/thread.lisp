@@ -117,13 +117,15 @@ to run; NIL if the reaction was aborted."
 
 ;; Other plans must not wait for one that never does.
 (defmethod slices-spent ((interface interface) runner)
-  "If this is the plans' thread, let time go on for plans that wait for it, and serve wishes."
+  "If this is the plans' thread, let time go on. End the reaction if a wish or a fork of the run
+waits for its end."
   (when (eq (current-thread) (interface-thread interface))
-    (let ((tick (simulation-tick (interface-simulation interface))))
-      (when (> tick (plan-runner-tick runner)) (advance-timers runner tick)))
-    (publish-next-tick interface)
-    (wake-idle-simulation interface)
-    (wish-to-serve interface)))
+    (let* ((simulation (interface-simulation interface)) (tick (simulation-tick simulation)))
+      (setf (interface-computing-p interface) t)
+      (when (> tick (plan-runner-tick runner)) (advance-timers runner tick))
+      (publish-next-tick interface)
+      (wake-idle-simulation interface)
+      (or (fork-postponed-p simulation) (wish-to-serve interface)))))
 
 (defun run-plans-thread (interface)
   (loop

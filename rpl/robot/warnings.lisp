@@ -173,6 +173,8 @@ the error."
   (let ((parts (waiting-parts task)))
     (and (notany #'waits-on-purpose-p parts)
          (notany #'waits-for-message-p parts)
+         ;; The end of a rollout, for one.
+         (notany #'stringp (mapcar #'task-awaiting parts))
          (or (every #'waits-for-robot-only-p parts)
              (not (others-may-set-fluents-p interface)))
          parts)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(record-outside-act await-postponed-fork))
+(export '(record-outside-act fork-postponed-p await-postponed-fork))
 
 ;;; A run that keeps forks has a PAST: these forks, and its ACTS, everything done to the run since
 ;;; the oldest fork, in order: the entries of the journal, and requests to plans from outside. A
@@ -228,6 +228,11 @@ participant is busy, try again at the end of the next tick."
 
 (defconstant +max-fork-wait-checks+ 100
   "How many times a thread checks whether the fork that it waits for was made, before it gives up.")
+
+(defun fork-postponed-p (simulation)
+  "True if a fork of SIMULATION was postponed because a participant was busy. Any thread may ask."
+  (let ((past (simulation-past simulation)))
+    (and past (past-wanted past) t)))
 
 (defun await-postponed-fork (simulation)
   "If a fork of SIMULATION was postponed because this thread was busy, wait until the fork is made

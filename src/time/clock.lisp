@@ -49,11 +49,21 @@ the time when the next tick was due; lateness of more than a quarter of a second
            (answer-questions custody)
         finally (return (max due (- (seconds-now) (if (eq :free (pacing-rate pacing)) 0 0.25d0))))))
 
-(defun time-to-go-on (pacing last)
-  "Return the time from which KEEP-PACE counts after a rest, if the tick before was due at LAST. The
-next tick is due at once after a pause; otherwise, as ever, a tick's time after LAST at least."
+(defun time-to-go-on (pacing last paused-p)
+  "Return the time from which KEEP-PACE counts after a rest, if the tick before was due at LAST. If
+PAUSED-P is true, RESUME ended the rest: the next tick is due at once. Otherwise it is due a tick's
+time after LAST at least."
   (let ((earliest (- (seconds-now) (seconds-per-tick pacing))))
-    (if (pacing-paused-p pacing) earliest (max last earliest))))
+    (if paused-p earliest (max last earliest))))
+
+(defun rest-until-woken (custody pacing last)
+  "Sleep while there is nothing to do for PACING. Return the time from which KEEP-PACE counts."
+  (let ((paused-p (pacing-paused-p pacing)))
+    ;; The timeout covers tests that come true without a request (reading 88).
+    (sleep-until-woken custody 1 (lambda ()
+                                   (and (nothing-to-do-p pacing)
+                                        (not (pacing-stopping-p pacing)))))
+    (time-to-go-on pacing last paused-p)))
 
 ;;; Passing ticks.
 
@@ -76,12 +86,7 @@ next tick is due at once after a pause; otherwise, as ever, a tick's time after 
   (loop with last = (- (seconds-now) (seconds-per-tick pacing))
         until (or (pacing-stopping-p pacing) (not (has-custody-p custody)))
         do (answer-questions custody)
-           (cond ((nothing-to-do-p pacing)
-                  ;; The timeout covers tests that come true without a request (reading 88).
-                  (sleep-until-woken custody 1 (lambda ()
-                                                 (and (nothing-to-do-p pacing)
-                                                      (not (pacing-stopping-p pacing)))))
-                  (setf last (time-to-go-on pacing last)))
+           (cond ((nothing-to-do-p pacing) (setf last (rest-until-woken custody pacing last)))
                  (t (setf last (keep-pace custody pacing last))
                     ;; It may have been paused while it waited.
                     (unless (paused-or-stopped-p pacing)
