@@ -50,6 +50,7 @@
                  (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes")
                  (:file "messages") (:file "rays")
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "tending")
+                 (:file "track-matching")
                  (:file "soundness")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command") (:file "error-codes") (:file "operation")
