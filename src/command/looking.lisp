@@ -249,11 +249,11 @@ called with NIL when the track begins, and with an error code when the track end
      (:report (designator)
               (format nil "~A tracking ~A" (operation-resource operation) designator)))
     "Track DESIGNATOR with CAMERA as CAMERA-TRACK does, and look every TRACK-MATCH-INTERVAL* ticks
-whether what it denotes still fits SPECIFICATION. A look that finds it so updates the designator's
-data. It may take another object that fits, within TRACK-MATCH-GATE*, for the tracked one, and
-DESIGNATOR then denotes that object. After TRACK-MATCH-MISSES* looks in succession without an object
-that fits, the track is lost. The continuation is called with NIL when the track begins and after
-each look that updates the data, and with an error code when the track ends."
+whether the object still fits SPECIFICATION. If it does, update the designator's data. The camera
+may take another object that fits for the tracked one, within TRACK-MATCH-GATE*; DESIGNATOR then
+denotes that object. After TRACK-MATCH-MISSES* looks in succession without an object that fits, the
+track is lost. The continuation is called with NIL when the track begins and at each update of the
+data, and with an error code when the track ends."
   (warn-of-unknown-substances specification)
   (warn-of-unknown-attributes specification (operation-world operation))
   (begin-track operation camera designator
