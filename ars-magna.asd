@@ -50,6 +50,7 @@
                  (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes")
                  (:file "messages") (:file "rays")
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "tending")
+                 (:file "track-matching")
                  (:file "soundness")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command") (:file "error-codes") (:file "operation")
@@ -368,6 +369,7 @@
                  (:file "several-plans-ten") (:file "several-joining")
                  (:file "several-rewinding") (:file "several-mistakes") (:file "messages")
                  (:file "messages-kept") (:file "messages-plans")
+                 (:file "track-matching") (:file "track-matching-kept")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")

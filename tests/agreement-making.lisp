@@ -93,7 +93,12 @@
   "Return a deed that looks for something, tracks it and takes it."
   (let ((index (make-roll 4)))
     `(command command:camera-get-object-designator (:camera ,index) (:non-local ())
-              (command command:camera-track (:camera ,index) ((:designator ,(make-roll 4)))
+              (command ,@(if (make-luck .5)
+                             `(command:camera-track
+                               (:camera ,index) ((:designator ,(make-roll 4))))
+                             `(command:camera-track-matching
+                               (:camera ,index)
+                               ((:designator ,(make-roll 4)) ,(make-pick '(() ((:color green)))))))
                        ,@(if (make-luck .5)
                              `((command command:hand-grasp-desig (:hand ,index)
                                         ((:camera ,index) (:designator ,(make-roll 4)))

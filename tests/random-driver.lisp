@@ -97,8 +97,10 @@ was answered or was wrong; CALLS digests all calls. Once over, answers lead on t
 
 (defun last-answer-p (name code answers)
   "True if CODE ends the command NAME, which has had ANSWERS answers before. A track tells that it
-has begun."
-  (not (and (eq name 'command:camera-track) (null code) (zerop answers))))
+has begun, and a matching track tells of its looks, too."
+  (not (and (null code)
+            (or (eq name 'command:camera-track-matching)
+                (and (eq name 'command:camera-track) (zerop answers))))))
 
 (defun note-answer (call name results)
   "Note that CALL, of the command NAME, was answered with RESULTS."

@@ -151,6 +151,10 @@
      (rpl:seq (driver:rpl-camera-insert 0 0) (rpl:wait-for (svref driver:camera-moved* 0))))
     (command:camera-track nil (driver:rpl-camera-track 0 designator) (seen 'green))
     (command:camera-track :already-tracking (driver:rpl-camera-track 0 designator) (tracked 'green))
+    (command:camera-track-matching
+     nil (driver:rpl-camera-track-matching 0 designator '((:color green))) (seen 'green))
+    (command:camera-track-matching
+     :already-tracking (driver:rpl-camera-track-matching 0 designator '()) (tracked 'green))
     (command:camera-untrack nil (driver:rpl-camera-untrack 0) (tracked 'green)
      (null (robot:camera-tracks (robot:robot-camera fitter 0))))
     (command:camera-untrack :not-tracking (driver:rpl-camera-untrack 0))
@@ -213,7 +217,8 @@
            (t (list 'driver:robot-movement-error* 'driver:robot-stopped*))))
         (robot:camera
          (case name
-           (command:camera-track (of 'driver:camera-tracking-error* 'driver:camera-tracking*))
+           ((command:camera-track command:camera-track-matching)
+            (of 'driver:camera-tracking-error* 'driver:camera-tracking*))
            (command:camera-untrack (of 'driver:camera-tracking-error* nil))
            ((command:camera-turn command:camera-align-robot command:camera-align-place
              command:camera-insert command:camera-remove)
@@ -228,7 +233,8 @@
 
 (defun unpulsed-p (command code)
   "True if COMMAND tells of CODE by no pulse: a track that does not begin, a grip that was none."
-  (or (and code (eq 'command:camera-track (command:command-name command)))
+  (or (and code (member (command:command-name command)
+                        '(command:camera-track command:camera-track-matching)))
       (and (eq code :not-grasping) (eq 'command:hand-track (command:command-name command)))))
 
 (defun answer-form (command call before truth)

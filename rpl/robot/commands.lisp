@@ -53,8 +53,9 @@
   (:error camera-error*)
   (:pulse camera-input*))
 
-;; A track is answered twice: when it starts, without an error, and when it ends, with one.
-(define-outcome (camera-track) ()
+;; A track is answered twice: when it starts, without an error, and when it ends, with one. A
+;; matching track is also answered when it has matched its designator, without an error.
+(define-outcome (camera-track camera-track-matching) ()
   (:error camera-tracking-error*)
   (:when (null err) (:pulse camera-tracking*)))
 

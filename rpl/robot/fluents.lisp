@@ -59,7 +59,8 @@ pulsed, and never set, its documentation begins with the word Pulsed. Return the
   (camera-views* "The latest view, a list of numbers.")
   (camera-designators* "The designators found by the last search; () if it failed.")
   (camera-error* "The error code of the last sensing command; NIL after success.")
-  (camera-tracking* "Pulsed when the camera starts tracking a designator.")
+  (camera-tracking* "Pulsed when the camera starts tracking a designator, and after each look of
+CAMERA-TRACK-MATCHING that updates its data.")
   (camera-tracking-error* "The error code with which the last track failed or ended.")
   (camera-moved* "Pulsed when the camera completes a move.")
   (camera-movement-error* "The error code of the last camera movement; NIL after success."))

@@ -119,12 +119,15 @@ error code :DESIGNATOR-NOT-FOUND means that the camera found no place."
 
 ;;; Things.
 
-(defun search-for-things (operation camera type specification all)
-  ;; Warn of substances that are asked for but do not exist.
+(defun warn-of-unknown-substances (specification)
+  "Warn of each substance in SPECIFICATION that does not exist."
   (loop for (key value) in specification
         when (eq key :substance)
           do (dolist (choice (ensure-list value))
-               (when (and choice (symbolp choice)) (warn-of-unknown-substance choice))))
+               (when (and choice (symbolp choice)) (warn-of-unknown-substance choice)))))
+
+(defun search-for-things (operation camera type specification all)
+  (warn-of-unknown-substances specification)
   (if (camera-tracking camera)
       (fail-with operation :already-tracking)
       (funcall (if all #'designate-all #'designate-first)
@@ -194,11 +197,18 @@ the same container or in the open (reading 140)."
                          (timeline-tick (operation-timeline operation))))
     (end-track camera :interrupt)))
 
+(defmethod notify-track-match ((operation operation) designator)
+  (notify-caller operation nil (list designator)))
+
 ;; See reading 83.
-(defun begin-track (operation camera designator)
-  (report operation nil (list designator))
-  (notify-caller operation nil (list designator))
-  (start-track camera designator operation))
+(defun begin-track (operation camera designator &rest track)
+  "Make CAMERA track DESIGNATOR for OPERATION, or end OPERATION with the code of what prevents this.
+TRACK may contain the track, an argument of START-TRACK."
+  (let ((obstacle (track-error-code camera designator)))
+    (cond (obstacle (fail-with operation obstacle designator))
+          (t (report operation nil (list designator))
+             (notify-caller operation nil (list designator))
+             (apply #'start-track camera designator operation track)))))
 
 ;; See reading 5.
 (define-command camera-track (operation (camera camera)
@@ -214,10 +224,42 @@ the same container or in the open (reading 140)."
               (format nil "~A tracking ~A" (operation-resource operation) designator)))
     "Turn CAMERA to what DESIGNATOR denotes and keep CAMERA pointed there. The continuation is
 called with NIL when the track begins, and with an error code when the track ends."
-  (let ((obstacle (track-error-code camera designator)))
-    (if obstacle
-        (fail-with operation obstacle designator)
-        (begin-track operation camera designator))))
+  (begin-track operation camera designator))
+
+(defun check-matching-arguments (camera designator specification)
+  "Return the arguments of CAMERA-TRACK-MATCHING to keep: DESIGNATOR and SPECIFICATION."
+  (declare (ignore camera))
+  (when (denotes-place-type-p designator)
+    (reject-argument 'camera-track-matching 'designator designator
+                     "a designator of an object; a place is tracked by camera-track"))
+  (list designator specification))
+
+;; See reading 246.
+(define-command camera-track-matching
+    (operation (camera camera)
+               (designator designator "what to track")
+               (specification specification "what the object must be like"))
+    ((designator "the designator"))
+    ((:family :looking) (:section "3.4.2") (:delay camera-desig-delay*) (:echo designator)
+     (:traits :begins) (:arguments check-matching-arguments)
+     (:errors (:already-tracking #'already-tracking-text)
+              (:local-not-local (operation-formatter "~*~A is not local any more"))
+              (:camera-inside (operation-formatter "~A is inside a container and cannot track ~A"))
+              (:lost-track (operation-formatter "~A lost track of ~A")))
+     (:report (designator)
+              (format nil "~A tracking ~A" (operation-resource operation) designator)))
+    "Track DESIGNATOR with CAMERA as CAMERA-TRACK does, and look every TRACK-MATCH-INTERVAL* ticks
+whether the object still fits SPECIFICATION. If it does, update the designator's data. The camera
+may take another object that fits for the tracked one, within TRACK-MATCH-GATE*; DESIGNATOR then
+denotes that object. After TRACK-MATCH-MISSES* looks in succession without an object that fits, the
+track is lost. The continuation is called with NIL when the track begins and at each update of the
+data, and with an error code when the track ends."
+  (warn-of-unknown-substances specification)
+  (warn-of-unknown-attributes specification (operation-world operation))
+  (begin-track operation camera designator
+               (make-matching-track designator operation specification)))
+
+(addition (camera-track-matching :ars :nisp))
 
 ;; See reading 84.
 (define-command camera-untrack (operation (camera camera))

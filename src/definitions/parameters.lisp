@@ -208,7 +208,16 @@ beyond 30 m, even straight ahead, because an even number of rays has no ray in t
      (camera-align-delay* 1 "ticks" :delay (integer 0 #.+largest+)
       "How long turning a camera takes.")
      (camera-desig-delay* 4 "ticks" :delay (integer 0 #.+largest+)
-      "How long it takes to acquire a designator, or to start a track."))
+      "How long it takes to acquire a designator, or to start a track.")
+     ;; As reading 246 says.
+     (track-match-interval* 10 "ticks" :limit (integer 1 #.+largest+)
+      "How many ticks pass from one look of CAMERA-TRACK-MATCHING to the next." :addition t)
+     (track-match-misses* 3 "looks" :limit (integer 1 #.+largest+)
+      "How many looks of CAMERA-TRACK-MATCHING in succession must find nothing that fits until the
+track is lost." :addition t)
+     (track-match-gate* 0.1d0 "radians" :limit (real 0 #.+largest+)
+      "How far from the direction of its thing CAMERA-TRACK-MATCHING may take another thing for it."
+      :addition t))
     ("Sensor error"
      (type-false-pos* 0.01d0 "probability" :noise (real 0 1)
       "The chance of sensing some place type where there is no place type.")

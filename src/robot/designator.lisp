@@ -3,7 +3,8 @@
 (in-package :ars-magna.robot)
 
 (export '(*default-robot-function* designators-of-thing *designator-limit* thing-enclosure
-          designator-truly-local-p designator-with-serial make-designator add-designator))
+          designator-truly-local-p designator-with-serial make-designator add-designator
+          denotes-place-type-p))
 
 ;;; A designator denotes a thing, a PLACE, or nothing: then it is false, and X, Y is where the robot
 ;;; seems to have seen something. Programs may read type, angle and data; the rest is for the
@@ -52,6 +53,11 @@ robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
 
 (defmethod print-object ((designator designator) stream)
   (print-named designator stream (format nil "Designator ~D" (designator-number designator))))
+
+(defun denotes-place-type-p (designator)
+  "True if DESIGNATOR was found in a search for a place type, even if it is false."
+  (let ((data (designator-data designator)))
+    (and data (atom (first data)))))
 
 ;;; A robot's designators by number.
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.robot)
 
-(export '(look-for-things look-for-places camera-heading take-view))
+(export '(look-for-things look-for-places camera-heading take-view warn-of-unknown-attributes))
 
 ;;; SCAN-DENSITY* rays cross the field of view. In view is whatever is in a cell that a ray meets,
 ;;; up to and including the first cell that is a wall or holds something that obstructs vision; also
@@ -150,11 +150,11 @@ Bodies of other robots count as things."
   "Return FINDS if ALL, else a list of one random element; () if FINDS is empty (reading 133)."
   (if (or all (null finds)) finds (list (roll-element finds dice))))
 
-(defun matching-things (camera type demands dice)
-  "CAMERA sees the things of TYPE in its view, but may miss each by chance. Return a list of pairs
-(thing . readings) for the things seen whose readings fit DEMANDS (reading 129)."
+(defun matching-things (camera things demands dice)
+  "CAMERA has THINGS in its view, but may miss each by chance. Return a list of pairs (thing .
+readings) for the things seen whose readings fit DEMANDS (reading 129)."
   (loop with missing = (sensing-error-probability miss-thing-prob*)
-        for thing in (things-in-view camera type)
+        for thing in things
         for distance = (viewing-distance camera thing)
         unless (chance missing dice)
           append (multiple-value-bind (matches readings)
@@ -172,18 +172,23 @@ Bodies of other robots count as things."
     (make-sighting type thing x y
                    (describe-thing thing readings (viewing-distance camera thing) dice))))
 
+(defun warn-of-unknown-attributes (specification world)
+  "Warn once of each undeclared attribute in SPECIFICATION."
+  (loop for (name) in specification
+        for key = (attribute-key name)
+        unless (declared-attribute key) do (warn-of-unknown-attribute key world)))
+
 (defun look-for-things (camera type specification &key all)
   "Return a list of CAMERA's sightings of things of TYPE that fit SPECIFICATION: all sightings if
 ALL, else one. The list may contain false sightings."
   (let* ((world (robot-world (camera-robot camera)))
          (dice (robot-dice (camera-robot camera) :looking))
          (demands (parse-specification specification))
-         (finds (matching-things camera type demands dice))
+         (finds (matching-things camera (things-in-view camera type) demands dice))
          (phantoms (if (and (camera-location camera) (eq type :non-local))
                        0
                        (false-sighting-count false-thing-prob* all dice))))
-    (loop for demand in demands
-          unless (demand-attribute demand) do (warn-of-unknown-attribute (demand-key demand) world))
+    (warn-of-unknown-attributes specification world)
     (loop for find in (all-or-random-one (append finds (make-list phantoms)) all dice)
           collect (if find
                       (thing-sighting camera type (first find) (rest find) dice)

@@ -22,6 +22,9 @@
              "the contents of ~A are not inside it" holder))
 
 (defun check-track (track)
+  (when (matching-track-p track)
+    (must-hold (specification-p (matching-track-specification track))
+               "what a track is matched with is invalid"))
   (when (track-operation track) (check-request (track-operation track))))
 
 (defun check-camera (camera)

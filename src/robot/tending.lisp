@@ -65,8 +65,8 @@ During an approach a free line to a corner of the cell is enough."
           (:obstructed nil)
           ((nil) (in-sight-p world own-x own-y x y))))))
 
-;;; A track updates angle and distance of its designator, never the data, and points the camera
-;;; there. It is lost:
+;;; A track updates angle and distance of its designator and points the camera there. Only a
+;;; matching track updates the data (see track-matching.lisp). A track is lost:
 ;;; - when the denotation is hidden
 ;;; - when it moves too fast: its direction from the robot changes in a tick by more than half the
 ;;;   field of view. The robot's own turning does not count, as the camera compensates it; nor do
@@ -162,14 +162,16 @@ approach does not count, because the approach itself reports it (reading 112)."
           (> (designator-swing designator) (* 0.5d0 (camera-field-of-view camera))))))
 
 (defun keep-or-lose-track (camera designator dice)
-  "Point CAMERA at DESIGNATOR, or by chance let CAMERA lose the track (readings 220, 235)."
-  (if (and (not no-sensor-error*)
-           (chance (per-tick-probability (if (designator-denotation designator)
-                                             prob-lose-track*
-                                             prob-lose-false-track*))
-                   dice))
-      (lose-track camera)
-      (setf (camera-angle camera) (designator-angle designator))))
+  "Point CAMERA at DESIGNATOR and match the track if due, or by chance let CAMERA lose the track
+(readings 220, 235)."
+  (cond ((and (not no-sensor-error*)
+              (chance (per-tick-probability (if (designator-denotation designator)
+                                                prob-lose-track*
+                                                prob-lose-false-track*))
+                      dice))
+         (lose-track camera))
+        (t (setf (camera-angle camera) (designator-angle designator))
+           (match-track (camera-tracking camera) camera dice))))
 
 (defun update-local-track (camera designator dice)
   (let ((local (designator-truly-local-p designator)))
@@ -224,15 +226,16 @@ approach does not count, because the approach itself reports it (reading 112)."
           thereis (or (robot-ended-tracks robot)
                       (some #'camera-tracking (robot-cameras robot)))))
 
-(defun start-track (camera designator operation)
-  "Make CAMERA track DESIGNATOR. When the track ends, call NOTIFY-TRACK-END (reading 142)."
+(defun start-track (camera designator operation
+                    &optional (track (make-track designator operation)))
+  "Make CAMERA track DESIGNATOR. When TRACK ends, call NOTIFY-TRACK-END of OPERATION (reading 142)."
   (unless (tracked-p designator)
     (let ((robot (camera-robot camera)))
       (refresh-once designator (world-tick (robot-world robot)) (robot-dice robot :tracking))
       ;; It may have been seen from quite another place.
       (setf (designator-swing designator) 0d0)))
   (setf (camera-angle camera) (designator-angle designator)
-        (camera-tracking camera) (make-track designator operation)))
+        (camera-tracking camera) track))
 
 (defun end-track-on-arrival (camera)
   "Point CAMERA at what it tracks and end its track, because the robot has arrived (reading 108)."

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(tracking-p end-track drop-designator track notify-track-end approaching-p))
+(export '(tracking-p end-track drop-designator track notify-track-end notify-track-match
+          approaching-p))
 
 ;;; A track runs in the background of a camera's commands: the camera keeps pointing at its
 ;;; designator's denotation. Tracks are updated once a tick, after events and kickers. A track may
@@ -22,6 +23,16 @@
 
 (defgeneric notify-track-end (operation code designator)
   (:documentation "Report to OPERATION that its track of DESIGNATOR has ended with CODE."))
+
+(defgeneric notify-track-match (operation designator)
+  (:documentation "Report to OPERATION that its track has matched DESIGNATOR anew."))
+
+(defgeneric match-track (track camera dice)
+  (:documentation "CAMERA has followed TRACK in this tick. If TRACK is to be matched now, match it,
+with errors drawn from DICE (see track-matching.lisp).")
+  (:method (track camera dice)
+    (declare (ignore track camera dice))
+    nil))
 
 (defgeneric approaching-p (event camera)
   (:documentation "EVENT is pending on a robot. True if it moves the robot to what CAMERA tracks.")
@@ -104,9 +115,10 @@ track is lost and no other camera tracks the designator, drop the designator."
             (*reported-robot* (robot-name (camera-robot camera))))
         (drop-designator designator)))))
 
-(defun lose-track (camera)
+(defun lose-track (camera &optional reason)
+  "End the track of CAMERA with :LOST-TRACK and a warning, which gives REASON, a string, if any."
   (end-track camera :lost-track
-             (format nil "~A lost track of ~A" camera (camera-tracks camera))))
+             (format nil "~A lost track of ~A~@[: ~A~]" camera (camera-tracks camera) reason)))
 
 (defmethod interrupt-resource ((camera camera) timeline)
   (declare (ignore timeline))
