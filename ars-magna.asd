@@ -49,7 +49,7 @@
                  (:file "sight") (:file "designator") (:file "motion") (:file "tracks")
                  (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes")
                  (:file "messages") (:file "rays")
-                 (:file "matching") (:file "sightings") (:file "scanning") (:file "tending")
+                 (:file "matching") (:file "ranging") (:file "sightings") (:file "scanning") (:file "tending")
                  (:file "soundness")))
    (:module "src/command" :serial t
     :components ((:file "package") (:file "command") (:file "error-codes") (:file "operation")
