@@ -368,6 +368,7 @@
                  (:file "several-plans-ten") (:file "several-joining")
                  (:file "several-rewinding") (:file "several-mistakes") (:file "messages")
                  (:file "messages-kept") (:file "messages-plans")
+                 (:file "rangefinders") (:file "doors")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")
