@@ -110,7 +110,6 @@ argument of."
           ((named "CAMERA") (part-of-any #'robot:robot-cameras))
           ((named "HAND") (part-of-any #'robot:robot-hands))
           ((named "STORAGE-BIN") (part-of-any #'robot:robot-bins))
-          ((named "RANGEFINDER") (part-of-any #'robot:robot-sensors))
           ((named "THING" "OBJECT" "LOCATION") (pick (world:world-thing-list world:*world*)))
           ((named "WORLD") world:*world*)
           ((named "MAP") (world:find-map 'zoo))

@@ -162,7 +162,7 @@
   (second (end-of #'command:camera-get-object-designator (steward-camera) :local specification)))
 
 (defun handle-gate (name &optional (hand 0) (key nil))
-  "Do the manipulation NAME on the gate with HAND until it does not fail by chance. Return its code."
+  "Do the manipulation NAME on the gate until it does not fail by chance. Return its code."
   (loop repeat 10
         for objects = (cons (local-designator '((:door t)))
                             (and key (list (local-designator '((:type :key))))))

@@ -24,10 +24,9 @@
   (obj barrel (6.5 4.5) ((:size 20) (:capacity 18) (:closed t)) (apple ((:size 1) (:weight 1)))))
 
 (robot:defrobot keeper (zoo (3.5 3.5) 0)
-  :cameras (((/ pi 2) 3) ((* 2 pi) 5)) :hands (10 4) :bins (20 5)
-  :parts ((robot:rangefinder :beams 3 :arc 4)))
+  :cameras (((/ pi 2) 3) ((* 2 pi) 5)) :hands (10 4) :bins (20 5))
 (robot:defrobot helper (zoo (2.5 3.5) 1)
-  :cameras (((* 2 pi) 3)) :hands (6) :bins (8) :parts ((robot:rangefinder)))
+  :cameras (((* 2 pi) 3)) :hands (6) :bins (8))
 
 ;;; Kickers. All they need comes from the world they run in.
 
@@ -153,9 +152,8 @@ another command, and sometimes fails."
   (ecase (intern (string type) :keyword)
     (:robot (any-robot))
     (:camera (part-of-any #'robot:robot-cameras))
-    (:hand (part-of-any #'robot:robot-hands))
+    ((:hand :rangefinder) (part-of-any #'robot:robot-hands))
     (:storage-bin (part-of-any #'robot:robot-bins))
-    (:rangefinder (part-of-any #'robot:robot-sensors))
     (:designator (any-designator))
     (:destination (if (luck .25) (part-of-any #'robot:robot-bins) (any-designator)))
     (:designator-type (if (luck .7) :local :non-local))

@@ -79,7 +79,7 @@
       (is (equal '(4.5d0 :wall) (meets 9.5 4.5 0)) "over what blocks nothing")
       (is (equal '(nil nil) (meets 5.5 4.5 0 2)))
       (is (equal '(2.5d0 :wall) (meets 5.5 4.5 0 5/2)))
-      (is (equal '(1.5d0 :wall) (meets 5.5 11.5 (/ pi 2))) "the cell of the start does not count"))))
+      (is (equal '(1.5d0 :wall) (meets 5.5 11.5 (/ pi 2))) "the start does not count"))))
 
 (test rays.pass-corners-as-views-do
   (in-cavern ()
@@ -225,7 +225,8 @@
   (is-true (has-words-p (joined (type-to 'elk "ranges 0")) "ELK has no rangefinder.")))
 
 (test rangefinders.wrong-options-say-what-is-right
-  (loop for (part word) in '(((robot:rangefinder :arc 7) "2 pi") ((robot:rangefinder :beams 0) "beams")
+  (loop for (part word) in '(((robot:rangefinder :arc 7) "2 pi")
+                             ((robot:rangefinder :beams 0) "beams")
                              ((robot:rangefinder :maximum 0) "maximum")
                              ((robot:rangefinder :range 3) ":maximum")
                              ((robot:rangefinder :last-ranges (1)) ":beams"))

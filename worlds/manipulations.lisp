@@ -1,9 +1,9 @@
 ;;;; manipulations.lisp -- manipulations for lids, doors, locks and lamps.
 
-;;; Use them in any world with containers, doors (:door #t), keys (:type :key) and lamps (:type :lamp):
-;;; (manipulate open box-designator (robot-hand robbie 0) continuation). A lock and its keys have
-;;; the same :lock-id. The error codes are :FAILED, and those that name the obstacle, such as
-;;; :LOCKED. The value is the hand. Manual 5.5.
+;;; Use them in any world with containers, doors (:door #t), keys (:type :key) and lamps
+;;; (:type :lamp): (manipulate open box-designator (robot-hand robbie 0) continuation). A lock and
+;;; its keys have the same :lock-id. The error codes are :FAILED, and those that name the obstacle,
+;;; such as :LOCKED. The value is the hand. Manual 5.5.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)

@@ -96,7 +96,7 @@
 (defun sensor-value-text (value)
   "Return VALUE, of a slot of a sensor, as text. Floats have two decimals."
   (cond ((floatp value) (format nil "~,2F" value))
-        ((proper-list-of-p #'floatp value) (format nil "(~{~,2F~^ ~})" value))
+        ((and (consp value) (proper-list-of-p #'floatp value)) (format nil "(~{~,2F~^ ~})" value))
         (t (princ-to-string value))))
 
 (defun write-sensor (sensor)

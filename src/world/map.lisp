@@ -3,7 +3,8 @@
 (in-package :ars-magna.world)
 
 (export '(map-replaced map-reference-form map-index point-index +wall+ +obsmove+ +obsview+
-          +occupied+ +closed-door+ +wall-or-door+ +opaque+ cell *maps* find-map-argument walk-cells-on-line column-or-row grid-size
+          +occupied+ +closed-door+ +wall-or-door+ +opaque+ cell *maps* find-map-argument
+          walk-cells-on-line column-or-row grid-size
           +infinite-distance+
           +no-limit+))
 

@@ -102,6 +102,7 @@ such warning about WHAT in a run is also printed if no program reads it."
                          :notable-p (first-warning-for-key-p (list :in-wall what) world))))
 
 (defun check-inside-map (operator map x y)
+  "Signal WRONG-ARGUMENT about OPERATOR unless (X,Y) is a point of MAP."
   (unless (and (sane-number-p x) (sane-number-p y) (map-index map x y))
     (reject-argument operator "position" (list x y)
                      (format nil "a point of ~A, which is ~D by ~D metres"
