@@ -48,7 +48,8 @@
         for row from 1 by 2
         collect (list name (list (make-between 1.3 2.8) (make-between (+ row .1) (+ row .9)))
                       (make-pick '(0 1 2 4))
-                      :cameras (list (list (* 2 pi) 5)) :hands '(10) :bins '(8))))
+                      :cameras (list (list (* 2 pi) 5)) :hands '(10) :bins '(8)
+                      :parts '((robot:rangefinder :beams 4 :arc 5)))))
 
 ;;; Deeds.
 
@@ -60,6 +61,7 @@
       (:camera `(:camera ,index))
       (:hand `(:hand ,index))
       (:storage-bin `(:bin ,index))
+      (:rangefinder `(:sensor ,index))
       (:designator `(:designator ,index))
       (:destination (make-pick `((:bin ,index) (:designator ,index))))
       (:designator-type (make-pick '(:local :non-local)))

@@ -55,6 +55,7 @@ the number of ticks passed at once."
                         (:camera (parts-here #'robot:robot-cameras))
                         (:hand (parts-here #'robot:robot-hands))
                         (:bin (parts-here #'robot:robot-bins))
+                        (:sensor (parts-here #'robot:robot-sensors))
                         (:thing (things-here))
                         (:designator (designators-here))
                         (:task (tasks-here)))))

@@ -148,7 +148,7 @@
 
 (test sensor.is-shown-by-status
   (let ((text (joined (type-to 'bat "sonar-ping 0" "status"))))
-    (is (search "Sonar 0: pings 1, echo 3.9" text) "~A" text)
+    (is (search "Sonar 0: pings 1, echo 3.95" text) "~A" text)
     (is (search "Sonar 1: pings 0, echo NIL" text))))
 
 (rpl:def-interp-proc listen-ahead ()

@@ -97,13 +97,13 @@
   "Draw METRES that a sensor of ROBOT reads, as a line to the right."
   (declare (ignore snapshot))
   (let ((x (display:robot-image-x robot)) (y (display:robot-image-y robot)))
-    (display:with-halo ((display::layer-ink :ranges) :dashes (display::layer-dashes :ranges))
+    (display:with-halo ((display::layer-ink :sonar) :dashes (display::layer-dashes :sonar))
       (canvas:draw-segments canvas canvas:draw-gcontext*
                             (display:points-to-pixels (list x y (+ x metres) y))))))
 
 (defun range-marks (view robot)
   (display::glyph-mark-at view (+ 1 (display:robot-image-x robot)) (display:robot-image-y robot)
-                          (display::make-glyph :layer #\~ "range")))
+                          (display::make-glyph :layer #\~ "sonar")))
 
 (defmacro with-range-layer (() &body body)
   "Run BODY while there is a layer :RANGES, of a sensor that reads 2 metres."
@@ -111,24 +111,24 @@
          (display:*picture-layers* display:*picture-layers*))
      (unwind-protect
           (progn
-            (display:define-layer :ranges "Ranges" "What the rangefinder reads."
+            (display:define-layer :sonar "Sonar" "What the sonar reads."
               :default-p t :note (constantly 2) :draw 'draw-range
-              :ink #x0A4468 :dashes '(8 2) :legend "range"
-              :text-name :range :text 'range-marks)
+              :ink #x0A4468 :dashes '(8 2) :legend "sonar"
+              :text-name :echo :text 'range-marks)
             ,@body)
        (display::document-layers))))
 
 (test layers.one-form-brings-a-new-one-into-pictures-legends-text-maps-and-help
   (with-range-layer ()
     (in-studio (robot)
-      (is-true (has-words-p (display:svg-picture robot) (web-dashes '(8 2)) ">range<"))
-      (is (not (mentions-p (display:svg-picture robot :layers '(:legend)) ">range<")))
-      (is-true (has-words-p (display:text-map robot :layers '(:range)) "~ range"))
+      (is-true (has-words-p (display:svg-picture robot) (web-dashes '(8 2)) ">sonar<"))
+      (is (not (mentions-p (display:svg-picture robot :layers '(:legend)) ">sonar<")))
+      (is-true (has-words-p (display:text-map robot :layers '(:echo)) "~ sonar"))
       (is-true (has-words-p (documentation 'display:*picture-layers* 'variable)
-                            ":RANGES *" "An addition to the manual."))
-      (is (equal '(:ranges :range "RANGES or RANGE")
-                 (list (display:picture-layer-name :range) (display:text-layer-name :ranges)
-                       (display:layer-prompt-text :ranges)))))))
+                            ":SONAR *" "An addition to the manual."))
+      (is (equal '(:sonar :echo "SONAR or ECHO")
+                 (list (display:picture-layer-name :echo) (display:text-layer-name :sonar)
+                       (display:layer-prompt-text :sonar)))))))
 
 (test layers.what-they-note-changes-what-displays-show
   "A window draws anew where a note is another one."

@@ -154,7 +154,7 @@ another command, and sometimes fails."
   (ecase (intern (string type) :keyword)
     (:robot (any-robot))
     (:camera (part-of-any #'robot:robot-cameras))
-    (:hand (part-of-any #'robot:robot-hands))
+    ((:hand :rangefinder) (part-of-any #'robot:robot-hands))
     (:storage-bin (part-of-any #'robot:robot-bins))
     (:designator (any-designator))
     (:destination (if (luck .25) (part-of-any #'robot:robot-bins) (any-designator)))

@@ -21,7 +21,8 @@
 (robot:defrobot fitter (workbench (3.5 5.5) 0)
   :cameras (((* 2 pi) 5) (1 3))
   :hands (5 5)
-  :bins (10 1))
+  :bins (10 1)
+  :parts ((robot:rangefinder :maximum 20)))
 
 (defmacro with-fitter ((&rest options) &body body)
   "Run BODY in a headless simulation with a fresh FITTER that plans drive."
@@ -159,6 +160,9 @@
      (null (robot:camera-tracks (robot:robot-camera fitter 0))))
     (command:camera-untrack :not-tracking (driver:rpl-camera-untrack 0))
 
+    (command:rangefinder-read nil (driver:rpl-rangefinder-read 0) nil
+     (equal '(8.5d0) (rpl:fluent-value (svref driver:rangefinder-ranges* 0))))
+
     (command:hand-insert nil (driver:rpl-hand-insert 0 designator) (seen 'red)
      (eq designator (rpl:fluent-value (svref driver:hand-inside* 0))))
     (command:hand-insert :non-local-designator (driver:rpl-hand-insert 0 designator)
@@ -229,6 +233,7 @@
            (command:hand-grasp-check (of 'driver:hand-error* 'driver:hand-input*))
            (command:hand-track (of 'driver:hand-error* 'driver:hand-lost*))
            (t (of 'driver:hand-error* 'driver:hand-moved*))))
+        (robot:rangefinder (of 'driver:rangefinder-error* 'driver:rangefinder-input*))
         (robot:storage-bin (of 'driver:storage-bin-error* 'driver:storage-bin-moved*))))))
 
 (defun unpulsed-p (command code)

@@ -5,8 +5,8 @@
   programs and experiments. All are user code, written as you would write your own.")
   ;; prototypes
   (:export #:table* #:desk* #:drawer* #:shelf* #:cupboard* #:cabinet* #:bed* #:sofa* #:chair*
-           #:lamp* #:plant* #:box* #:crate* #:waste-basket* #:suitcase* #:bottle* #:cup* #:tin*
-           #:ball* #:book* #:sheet* #:pen* #:key* #:toolbox* #:person*)
+           #:lamp* #:plant* #:door* #:box* #:crate* #:waste-basket* #:suitcase* #:bottle* #:cup*
+           #:tin* #:ball* #:book* #:sheet* #:pen* #:key* #:toolbox* #:person*)
   ;; kickers, and helpers to write more
   (:export #:roll-away #:blow-about #:be-borrowed #:change-light #:print-page #:wander-about
            #:do-rounds

@@ -61,6 +61,13 @@
                  ((:size 6) (:weight 3) (:color green) (:substance 70)))
   "A potted plant. Its substance is a number without a name.")
 
+;;; A door for the cell of a doorway. Closed, it is like a wall.
+
+(defvar door* (new-thing door nil
+                ((:door #t) (:closed #t) (:size 40) (:weight 30)
+                 (:color lightgreen) (:substance wood)))
+  "A closed door. A key with the same :lock-id locks and unlocks it.")
+
 ;;; Containers that can be carried.
 
 (defvar box* (new-thing box nil ((:size 8) (:capacity 8) (:weight 2)))

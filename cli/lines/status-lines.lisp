@@ -93,6 +93,17 @@
           ((eq :charged mode) "charged")
           ((and (eq :free mode) (getf status :live)) "free"))))
 
+(defun sensor-value-text (value)
+  "Return VALUE, of a slot of a sensor, as text. Floats have two decimals."
+  (cond ((floatp value) (format nil "~,2F" value))
+        ((and (consp value) (proper-list-of-p #'floatp value)) (format nil "(~{~,2F~^ ~})" value))
+        (t (princ-to-string value))))
+
+(defun write-sensor (sensor)
+  (write-trimmed-line "~A:~:{ ~(~A~) ~A~:^,~}" (getf sensor :name)
+                      (loop for (name value) in (getf sensor :slots)
+                            collect (list name (sensor-value-text value)))))
+
 ;; As readings 17 and 199 say.
 (defun write-status (status)
   (loop for (label key) in '(("Position:" :position) ("D Position:" :last-move)
@@ -101,9 +112,8 @@
   (loop for (label key) in '(("Angle:" :angle) ("Speed:" :speed) ("Turn Angle:" :turn-angle))
         do (format t "~19A~,2F~%" label (zero-if-tiny (getf status key))))
   (write-views (getf status :cameras))
-  ;; Parts of the user's own kinds, with their state and memory.
-  (dolist (sensor (getf status :sensors))
-    (write-trimmed-line "~A:~:{ ~(~A~) ~A~:^,~}" (getf sensor :name) (getf sensor :slots)))
+  ;; Rangefinders and parts of the user's own kinds, with their state and memory.
+  (mapc #'write-sensor (getf status :sensors))
   (format t "~19A~A~%" "Place:" (getf status :place))
   (write-commands-in-progress status)
   (let ((thinking (thinking-cost-text status)))

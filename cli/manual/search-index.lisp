@@ -4,8 +4,9 @@
 
 (defparameter *synonyms*
   '(;; Sensors
-    ("A sensor" "lidar" "laser" "sonar" "range" "range sensor" "range finder" "rangefinder"
-     "distance sensor" "proximity sensor" "sensor" "new sensor")
+    ("A sensor" "sensor" "new sensor")
+    ("rangefinder-read" "lidar" "laser" "sonar" "range" "range sensor" "range finder"
+     "rangefinder" "distance sensor" "proximity sensor")
     ("camera-view" "scan" "depth image" "view")
     ("camera-get-object-designator" "vision" "detect object" "object detection" "recognition"
      "recognize" "find object" "search for object" "perception")

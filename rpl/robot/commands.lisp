@@ -42,6 +42,16 @@
   (:error camera-error*)
   (:pulse camera-input*))
 
+(define-fluents rangefinder
+  (rangefinder-ranges* "The latest distances, a list of metres." :addition)
+  (rangefinder-error* "The error code of the last reading; NIL after success." :addition)
+  (rangefinder-input* "Pulsed when the rangefinder has been read." :addition))
+
+(define-outcome (rangefinder-read) (ranges)
+  (:when (null err) (:set rangefinder-ranges* ranges))
+  (:error rangefinder-error*)
+  (:pulse rangefinder-input*))
+
 ;; As reading 178 says.
 (define-outcome (camera-get-object-designator camera-get-place-designator) (designator)
   (:set camera-designators* (if designator (list designator) '()))

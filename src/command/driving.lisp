@@ -175,9 +175,11 @@ next tick unless BODY has ended OPERATION. Fails with :NOT-MOVING if the speed i
   (mod (round (/ angle (/ pi 2))) 4))
 
 (defun neighbour-wall-p (robot quarter)
-  "True if a wall is next to ROBOT's cell in direction QUARTER, in quarter turns from the x axis."
+  "True if a wall or a closed door is next to ROBOT's cell in direction QUARTER, in quarter turns
+from the x axis."
   (destructuring-bind (dx . dy) (svref #((1 . 0) (0 . 1) (-1 . 0) (0 . -1)) (mod quarter 4))
-    (wall-at-p (world-map (robot-world robot)) (+ (robot-x robot) dx) (+ (robot-y robot) dy))))
+    (blocked-cell-p (robot-world robot) (+ (robot-x robot) dx) (+ (robot-y robot) dy)
+                    +wall-or-door+)))
 
 (defun distance-to-side (robot quarter)
   "Return ROBOT's distance from the side of its cell in direction QUARTER, as in NEIGHBOUR-WALL-P."

@@ -16,6 +16,19 @@
     "Take a view with CAMERA."
   (succeed operation (take-view camera)))
 
+;;; A rangefinder is a part of its own.
+
+(define-command rangefinder-read (operation (rangefinder rangefinder))
+    ((ranges "a list of distances in metres, one for each beam from left to right"))
+    ((:family :looking) (:prompt "RANGES") (:delay range-delay*) (:traits :asks)
+     (:report (ranges)
+      (format nil "~A reads ~{~,2F~^ ~}" (operation-resource operation) ranges)))
+    "Measure the distances to the next obstacles with RANGEFINDER: walls, closed doors, and things
+and robots that block the way or the view. A beam that meets none reads the maximum."
+  (succeed operation (measure-ranges rangefinder)))
+
+(addition (rangefinder-read :ars :nisp))
+
 ;;; After its delay the search itself takes no time. Making designators takes a tick for each thing
 ;;; found after the first; things that have moved away by then are left out.
 

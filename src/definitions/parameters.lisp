@@ -128,8 +128,9 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
 (public clean-simulation)
 (defun clean-simulation ()
   "Remove all noise and error: set every noise parameter to its noiseless value and NO-SENSOR-ERROR*
-to T. DISCRETE-NOISE-FACTOR*, CONTINUOUS-NOISE-FACTOR* and STANDARD-MATCH-THRESHOLD* do not change,
-because they have no effect while NO-SENSOR-ERROR* is true. Delays and limits do not change either.
+to T. DISCRETE-NOISE-FACTOR*, CONTINUOUS-NOISE-FACTOR*, STANDARD-MATCH-THRESHOLD* and the errors of
+rangefinders do not change, because they have no effect while NO-SENSOR-ERROR* is true. Delays and
+limits do not change either.
 A second call changes nothing. Return nothing (manual, chapter 4; reading 117)."
   (unless *noise-before-cleaning*
     (setf *noise-before-cleaning*
@@ -276,6 +277,17 @@ designators of things, but no parameter for them." :addition :digested)
       "The chance, for each receiver, that a message that arrives is :GARBLED." :addition t)
      (mailbox-size* 100 "messages" :limit (integer 1 10000)
       "How many messages a robot's mailbox holds. A message more drops the oldest." :addition t))
+    ("Rangefinders"
+     (range-delay* 1 "ticks" :delay (integer 0 #.+largest+)
+      "How long it takes to read a rangefinder." :addition t)
+     (range-noise* 0.02d0 "fraction of the distance" :limit (real 0 1)
+      "The largest usual error of a distance that a rangefinder measures. Errors are uniform."
+      :addition t)
+     (range-outlier-prob* 0.01d0 "probability" :limit (real 0 1)
+      "The chance that a beam of a rangefinder reads a random distance." :addition t)
+     (range-miss-prob* 0.02d0 "probability" :limit (real 0 1)
+      "The chance that a beam of a rangefinder misses an obstacle and reads its maximum."
+      :addition t))
     ("Time"
      (tick-quantum* 1 "ticks" :setting (real 1 1000000)
       "How many of the manual's ticks one tick represents. Motion, drift and chances per tick are

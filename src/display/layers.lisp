@@ -103,6 +103,12 @@ is the live view of a window, in which names hold still, or NIL."
   :depth :looks :shown 'camera-image-look :draw 'draw-rays
   :ink (first +ray-inks+) :dashes '(1 3) :legend "rays" :last-p t :entries 'sensor-reading-entries)
 
+(define-layer :ranges "Ranges"
+  "The distances that each rangefinder has measured last, from where the robot was then."
+  :note 'range-scans-of-robot :draw 'draw-ranges
+  :ink #x0A5050 :dashes '(2 4) :legend "measured"
+  :text-name :range :text 'range-marks)
+
 (define-layer :tracks "Tracks"
   "The believed position of each object that a camera tracks."
   :default-p t :depth :cameras :shown 'camera-image-track :draw 'draw-track :boxes 'track-boxes

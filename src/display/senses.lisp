@@ -65,6 +65,29 @@ parameter of a substance in MAP, the last colour for the greatest."
                  (with-dashes ((layer-dashes :rays))
                    (draw-segments canvas draw-gcontext* rays))))))
 
+;;; Ranges.
+
+(defun range-scans-of-robot (robot)
+  "Return what the rangefinders of ROBOT have measured last, a list of lists of coordinates: the
+point where ROBOT was, and the end of each beam."
+  (loop for part across (robot-sensors robot)
+        when (and (rangefinder-p part) (rangefinder-last-pose part))
+          collect (destructuring-bind (x y heading) (rangefinder-last-pose part)
+                    (list* x y (loop for angle in (rangefinder-beam-angles part)
+                                     for range in (rangefinder-last-ranges part)
+                                     append (point-at-distance x y (+ heading angle) range))))))
+
+(defun draw-ranges (canvas scans robot snapshot)
+  "Draw a line for each beam of SCANS, with a dot at its end."
+  (declare (ignore robot snapshot))
+  (loop for (x y . ends) in scans
+        do (loop for (end-x end-y) on ends by #'cddr
+                 do (with-halo ((layer-ink :ranges) :dashes (layer-dashes :ranges))
+                      (draw-segments canvas draw-gcontext*
+                                     (points-to-pixels (list x y end-x end-y))))
+                    (with-halo ((layer-ink :ranges))
+                      (draw-circle canvas (to-pixels end-x) (to-pixels end-y) 2 t)))))
+
 ;;; Beliefs.
 
 (defun believed-place (robot designator)

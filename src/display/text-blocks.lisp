@@ -88,6 +88,7 @@ Believed positions have the kind :ROBOT, too. INK names CHAR's colour, or is NIL
   (ink nil :type (or symbol string) :read-only t))
 
 (define-constant +several+ #\* :documentation "The character for several kinds of things.")
+(define-constant +closed+ #\% :documentation "The character for closed doors.")
 (define-constant +other+ #\& :documentation "The character for things whose name has no letter.")
 
 ;;; Letters.
@@ -130,10 +131,12 @@ given to the largest things first. If WORLD has more names than letters, some na
                   free (remove letter free))))))))
 
 (defun thing-glyph (image letters)
-  (let ((name (symbol-name (thing-name (thing-image-thing image))))
-        (color (second (assoc :color (thing-image-attributes image)))))
-    (make-glyph :thing (gethash name letters +other+) name
-                (and (typep color '(or symbol string)) color))))
+  (flet ((value-of (key) (second (assoc key (thing-image-attributes image)))))
+    (let ((name (symbol-name (thing-name (thing-image-thing image))))
+          (color (value-of :color)) (closed-p (and (value-of :door) (value-of :closed))))
+      (make-glyph :thing (if closed-p +closed+ (gethash name letters +other+))
+                  (format nil "~A~:[~;, closed~]" name closed-p)
+                  (and (typep color '(or symbol string)) color)))))
 
 (defun things-glyphs (images letters)
   "Return the glyphs for the kinds of the things in IMAGES. If the things are of several kinds, the

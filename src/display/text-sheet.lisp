@@ -44,6 +44,14 @@
     (loop for camera in (remove-if-not #'camera-outside-container (robot-image-cameras robot))
           append (loop for number in (cone-blocks view robot camera) collect (cons number glyph)))))
 
+;;; Ranges.
+
+(defun range-marks (view robot)
+  (let ((glyph (make-glyph :layer #\~ (format nil "measured by ~A" (robot-image-label robot))
+                           :green)))
+    (loop for (nil nil . ends) in (getf (robot-image-notes robot) :ranges)
+          append (loop for (x y) on ends by #'cddr append (glyph-mark-at view x y glyph)))))
+
 ;;; Ways.
 
 (defun trail-marks (view robot)

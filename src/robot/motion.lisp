@@ -15,9 +15,10 @@
 
 (declaim (inline cell-obstacle))
 (defun cell-obstacle (flag)
-  "Return what keeps a robot out of a cell with FLAG: :WALL, :THING or NIL (reading 101)."
+  "Return what keeps a robot out of a cell with FLAG: :WALL, also for a closed door, :THING or NIL
+(reading 101)."
   (declare (type (unsigned-byte 8) flag))
-  (cond ((logtest flag +wall+) :wall)
+  (cond ((logtest flag +wall-or-door+) :wall)
         ((logtest flag +obsmove+) :thing)))
 
 ;; Inline, so that no float has to be boxed on the way. A position on a border belongs to the cell

@@ -185,8 +185,11 @@ NAME is a symbol or a string."
 ;;; The place that a robot senses (manual 3.4.3, 3.5).
 
 (defun robot-place-here (robot)
-  "Return the PLACE that ROBOT is really in, or NIL."
-  (cell-type (map-cell (world-map (robot-world robot)) (robot-x robot) (robot-y robot))))
+  "Return the PLACE that ROBOT is really in, or NIL. A cell with a closed door is no place."
+  (let* ((world (robot-world robot)) (map (world-map world))
+         (index (map-index map (robot-x robot) (robot-y robot))))
+    (unless (and index (logtest +closed-door+ (aref (world-flags world) index)))
+      (cell-type (map-cell map (robot-x robot) (robot-y robot))))))
 
 (defun sense-place-type (robot)
   "Return the place type that ROBOT senses where it is, or NIL. The true type is missed with the

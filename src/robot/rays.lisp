@@ -70,6 +70,65 @@ there, continue the ray. Return a list of the cells with things that the continu
               (walk-ray #'visit world beyond-x beyond-y dx dy))))))
     (nreverse cells)))
 
+;;; The distance along one ray, for range sensors.
+
+(define-constant +solid+ (logior +wall+ +obsmove+ +obsview+)
+  :documentation "The flags of a cell that reflects the ray of a range sensor.")
+
+(defun walk-to-solid-cell (world x y dx dy)
+  "Return the distance from (X,Y) in direction (DX,DY), a unit vector, to the next solid cell of
+WORLD and the cell's index; or to the edge of the map and NIL."
+  (let ((flags (world-flags world)) (map (world-map world)) (found nil))
+    (values (walk-cells-on-line (lambda (index at column)
+                                  (declare (ignore at column))
+                                  (when (logtest +solid+ (aref flags index)) (setf found index)))
+                                (map-width map) (map-height map) x y dx dy +no-limit+)
+            found)))
+
+(defun trace-ray (world x y dx dy)
+  "Do as WALK-TO-SOLID-CELL does, but pass corners as views do (reading 100)."
+  (let ((length 0d0))
+    (loop
+      (multiple-value-bind (at index) (walk-to-solid-cell world x y dx dy)
+        (incf length at)
+        (multiple-value-bind (beyond-x beyond-y)
+            (and index (line-point-beyond-corner world +solid+ (+ x (* dx at)) (+ y (* dy at))
+                                                 dx dy))
+          (cond ((null beyond-x) (return (values length index)))
+                ((blocked-cell-p world beyond-x beyond-y +solid+)
+                 (return (values length (map-index (world-map world) beyond-x beyond-y))))
+                (t (setf x beyond-x y beyond-y))))))))
+
+(defun solid-thing (index world)
+  "Return the largest thing in the cell INDEX of WORLD that blocks the way or the view, or NIL."
+  (let ((best nil))
+    (do-cell-things (thing index world)
+      (when (and (or (thing-obsmove-p thing) (thing-obsview-p thing))
+                 (or (null best) (> (thing-size thing) (thing-size best))))
+        (setf best thing)))
+    best))
+
+(addition cast-ray)
+(defun cast-ray (world x y angle &optional maximum)
+  "Return the true distance, in metres, from (X,Y) in the direction ANGLE, in radians, to the next
+obstacle in WORLD, and the obstacle: :WALL, or the thing or body. Return NIL if the obstacle is
+farther than MAXIMUM. Obstacles are the cells with a wall or with something on the floor that blocks
+the way or the view, and the edge of the map, which counts as a wall. The cell of (X,Y) does not
+count. No robot knows true distances: use CAST-RAY for sensors of your own, tests and displays. Call
+it between ticks or inside a tick. Signals WRONG-ARGUMENT."
+  (check-argument cast-ray world (world-p world) "a world, such as (robot-world ROBOT)")
+  (check-inside-map 'cast-ray (world-map world) x y)
+  (check-argument cast-ray angle (sane-number-p angle) (argument-type-text 'angle))
+  (check-argument cast-ray maximum (or (null maximum) (and (sane-number-p maximum) (<= 0 maximum)))
+                  "a number of metres, from 0 to 1e9, or NIL for no limit")
+  (multiple-value-bind (distance index)
+      (trace-ray world (double x) (double y) (cosine (double angle)) (sine (double angle)))
+    (when (or (null maximum) (<= distance maximum))
+      (values distance (or (and index
+                                (not (logtest +wall+ (aref (world-flags world) index)))
+                                (solid-thing index world))
+                           :wall)))))
+
 (defmacro do-rays ((dx dy &optional (per-x (gensym)) (per-y (gensym))) (angle width count)
                    &body body)
   "Run BODY for each of COUNT directions DX, DY, evenly spaced over WIDTH radians around

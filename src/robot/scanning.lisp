@@ -58,14 +58,15 @@ cells that rays meet within REACH columns and rows and that hold things on the f
 
 (defun place-cells-in-view (world number x y angle width count)
   "Send COUNT rays from (X,Y) in WORLD, spread over WIDTH radians around ANGLE. Return a list of the
-cells that the rays meet and whose place type has NUMBER in the map."
+cells that the rays meet and whose place type has NUMBER in the map, without closed doors."
   (declare #.*hot* (type world world) (type double-float x y angle width)
            (type (unsigned-byte 30) count) (type (unsigned-byte 8) number))
   (let ((flags (world-flags world)) (places (map-places (world-map world))) (found '()))
     (declare (type flag-vector places))
     (flet ((visit (index flag)
              (declare (type cell-index index) (type (unsigned-byte 8) flag))
-             (when (and (= (aref places index) number) (not (logtest flag +seen+)))
+             (when (and (= (aref places index) number)
+                        (not (logtest flag (logior +seen+ +closed-door+))))
                (toggle-seen flags index)
                (push index found))
              (logtest flag +opaque+)))

@@ -130,11 +130,16 @@ During an approach a free line to a corner of the cell is enough."
     (refresh-designator designator dice)))
 
 (defun denotation-in-open-p (designator)
-  "True if DESIGNATOR denotes something in the open, not in a container or bin."
+  "True if DESIGNATOR denotes something in the open: not in a container or bin, and no place whose
+door is closed."
   (let ((denotation (designator-denotation designator)))
     (and (null (designator-location designator))
-         (or (not (thing-p denotation))
-             (null (denotation-enclosure designator))))))
+         (typecase denotation
+           (thing (null (denotation-enclosure designator)))
+           (place (not (blocked-cell-p (robot-world (designator-robot designator))
+                                       (designator-x designator) (designator-y designator)
+                                       +closed-door+)))
+           (t t)))))
 
 (defun robot-at-denotation-p (designator)
   (in-same-cell-p (designator-robot designator)

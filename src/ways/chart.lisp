@@ -135,6 +135,17 @@ cost is 1 or more, or NIL if the cell cannot be crossed. Signals WRONG-ARGUMENT.
   (let ((cost (cost-of-node chart (node-of-point 'crossing-cost chart point))))
     (if (< cost +barred-cost+) cost nil)))
 
+;;; Doors that are believed to be closed.
+
+(defun chart-with-closed-doors (operator chart doors)
+  "Return CHART if DOORS is (). Else return a copy in which the cells of DOORS, points, are barred."
+  (if (null doors)
+      chart
+      (let ((copy (%make-chart (chart-terrain chart))))
+        (setf (chart-barred copy) (chart-barred chart))
+        (dolist (door doors copy)
+          (set-extra-cost copy (node-of-point operator copy door) +barred-cost+)))))
+
 ;;; The field of a goal. All charts of a terrain share one, until they bar a cell.
 
 (defconstant +most-cached-nodes+ 2000000

@@ -85,16 +85,20 @@ way. Both points are free. UNTIL and TURNS are arguments of TRACE-WAY."
        ,@body)))
 
 (addition find-way)
-(defun find-way (chart start goal &key until)
+(defun find-way (chart start goal &key until closed)
   "Return the way on CHART from START to GOAL, a list of PTs: the points where the way begins, turns
 and ends. Return () if there is no way. START and GOAL are PTs or lists (x y). A point in a wall
 stands for the nearest free point, up to five cells away. CHART may be a map or the name of a map,
 which stands for (make-chart map): a metre in a DOORWAY costs 2. With UNTIL the way ends in the
 first suitable cell after the cell of START: a place of the type named UNTIL, or a cell for whose
-column and row the function UNTIL returns true. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
+column and row the function UNTIL returns true. CLOSED lists points, PTs or lists (x y), of doors
+that you believe to be closed: the way avoids their cells. FIND-WAY does not look into any run. To
+remember closed doors, use BAR-CELL, which is faster. Signals WRONG-ARGUMENT and UNKNOWN-NAME."
   (check-argument find-way until (or (functionp until) (symbolp until))
                   "the name of a place type, or a function of a column and a row")
-  (let* ((chart (ensure-chart 'find-way chart))
+  (check-argument find-way closed (proper-list-of-p #'point-or-pair-p closed)
+                  "a list of PTs or lists (x y), points of doors")
+  (let* ((chart (chart-with-closed-doors 'find-way (ensure-chart 'find-way chart) closed))
          (until (if (and until (symbolp until)) (place-test chart until) until)))
     (with-free-endpoints (find-way chart start goal)
       (let ((points (points-of-way chart x y goal-x goal-y until nil)))

@@ -3,8 +3,8 @@
 (in-package :ars-magna.world)
 
 (export '(map-replaced map-reference-form map-index point-index +wall+ +obsmove+ +obsview+
-                       +occupied+
-          +opaque+ cell *maps* find-map-argument walk-cells-on-line column-or-row grid-size
+          +occupied+ +closed-door+ +wall-or-door+ +opaque+ cell *maps* find-map-argument
+          walk-cells-on-line column-or-row grid-size
           +infinite-distance+
           +no-limit+))
 
@@ -20,6 +20,9 @@
 (defconstant +obsview+ 4 "The flag of a cell where a thing on the floor blocks sight.")
 (defconstant +opaque+ (logior +wall+ +obsview+) "The flags of a cell where sight ends.")
 (defconstant +occupied+ 8 "The flag of a cell where any thing lies on the floor.")
+(defconstant +closed-door+ 16 "The flag of a cell with a closed door.")
+(defconstant +wall-or-door+ (logior +wall+ +closed-door+)
+  "The flags of a cell that is a wall, or is like a wall because of a closed door.")
 
 (deftype octets () '(simple-array (unsigned-byte 8) (*)))
 (deftype doubles () '(simple-array double-float (*)))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.world)
 
-(export '(place-thing warn-if-in-wall))
+(export '(place-thing warn-if-in-wall check-inside-map))
 
 ;;; Invariants: a thing on the floor is in the list of exactly the cell that holds its position;
 ;;; a thing in something is in exactly its contents; a cell's flags say what lies there.
@@ -12,7 +12,8 @@
 (defun thing-flags (thing)
   (logior +occupied+
           (if (thing-obsmove-p thing) +obsmove+ 0)
-          (if (thing-obsview-p thing) +obsview+ 0)))
+          (if (thing-obsview-p thing) +obsview+ 0)
+          (if (and (thing-closed-p thing) (closed-door-p thing)) +closed-door+ 0)))
 
 (defun refresh-cell-flags (world index)
   "Set the flags of the cell INDEX of WORLD from the map and the things on the cell's floor."
@@ -101,6 +102,7 @@ such warning about WHAT in a run is also printed if no program reads it."
                          :notable-p (first-warning-for-key-p (list :in-wall what) world))))
 
 (defun check-inside-map (operator map x y)
+  "Signal WRONG-ARGUMENT about OPERATOR unless (X,Y) is a point of MAP."
   (unless (and (sane-number-p x) (sane-number-p y) (map-index map x y))
     (reject-argument operator "position" (list x y)
                      (format nil "a point of ~A, which is ~D by ~D metres"
@@ -199,7 +201,7 @@ Signals MISUSE for prototypes. Return nothing. See reading 168."
 (define-operator 'destroy-thing '(thing) #'destroy-thing)
 
 ;;; Kicks. Manual 5.3.1. The path is not checked, only where it ends. From an open container or from
-;;; a hand a thing is kicked onto the floor. Off the map is as in a wall.
+;;; a hand a thing is kicked onto the floor. Off the map is as in a wall, and so is a closed door.
 
 (defun in-closed-holder-p (thing)
   (loop for location = (thing-location thing) then (thing-location location)
@@ -219,7 +221,7 @@ the body of a robot."
 (defun free-point-p (world x y)
   (declare (type double-float x y))
   (let ((index (point-index (world-map world) x y)))
-    (and index (not (logtest +wall+ (aref (world-flags world) index))))))
+    (and index (not (logtest +wall-or-door+ (aref (world-flags world) index))))))
 
 ;; It is on the stack, and is passed to functions instead of floats, which would be boxed.
 (declaim (inline make-kick))

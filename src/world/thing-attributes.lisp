@@ -81,12 +81,12 @@ a declared attribute or of an attribute of some thing."
   (flet ((number-of (key)
            (let ((value (get-attribute thing key))) (if (realp value) (double value) 0d0)))
          (truth-of (key) (and (get-attribute thing key) t)))
-    (setf (thing-obsmove-p thing) (truth-of :obsmove)
-          (thing-obsview-p thing) (truth-of :obsview)
+    ;; Nothing can be in the body of a robot.
+    (setf (thing-closed-p thing) (and (truth-of :closed) (not (body-p thing)))
+          (thing-obsmove-p thing) (or (truth-of :obsmove) (closed-door-p thing))
+          (thing-obsview-p thing) (or (truth-of :obsview) (closed-door-p thing))
           (thing-size thing) (number-of :size)
           (thing-weight thing) (number-of :weight)
-          ;; Nothing can be in the body of a robot.
-          (thing-closed-p thing) (and (truth-of :closed) (not (body-p thing)))
           (thing-capacity thing) (if (body-p thing) 0d0 (number-of :capacity))
           (thing-substance-p thing) (truth-of :substance)
           (thing-substance-parameter thing)
@@ -98,7 +98,7 @@ a declared attribute or of an attribute of some thing."
   "Give THING the attributes in DESCRIPTOR, and update its cached slots and the flags of its cell."
   (setf (thing-attributes thing) (merge-descriptors descriptor (thing-attributes thing)))
   ;; What UPDATE-PHYSICS-SLOTS reads.
-  (when (intersection '(:obsmove :obsview :closed :size :weight :capacity :substance)
+  (when (intersection '(:obsmove :obsview :closed :door :size :weight :capacity :substance)
                       (mapcar #'first descriptor))
     (update-physics-slots thing)
     (when (eq (thing-location thing) :floor)
