@@ -369,6 +369,7 @@
                  (:file "several-plans-ten") (:file "several-joining")
                  (:file "several-rewinding") (:file "several-mistakes") (:file "messages")
                  (:file "messages-kept") (:file "messages-plans")
+                 (:file "run-variables") (:file "run-variables-random")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")

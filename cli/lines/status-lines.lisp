@@ -132,7 +132,8 @@ left out" :optional))
     "Show the robot's state: position, last change of position (real and estimated), heading, speed,
 turning speed, what its cameras see now, the last place sensed, its designators, the commands in
 progress and who issued them, the last interruption, the cost of thinking if it was changed, and the
-values of run variables. A line tells if no ticks pass now. STATUS ALL shows each robot of the run. In Lisp: (status)."
+values of run variables. A line tells if no ticks pass now. STATUS ALL shows each robot of the run.
+In Lisp: (status)."
   (let ((robot (session-robot)) (all-p (and which (string-equal which "all"))))
     (when (and which (not all-p)) (setf robot (robot-here-named which)))
     (with-time-stopped

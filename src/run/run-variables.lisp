@@ -2,12 +2,17 @@
 
 (in-package :ars-magna.run)
 
-(export '(initialize-run-variables run-variables-set shown-run-variables))
+(export '(initialize-run-variables run-variables-used shown-run-variables))
 
 ;;; A run variable is a symbol macro, not a special variable: any thread reads the value of its
 ;;; current run. The values are a slot of the run's world, so forks, rewinds and saved runs have
-;;; their own. Values are plain data, which no code modifies, or things and robots. Code within ticks
-;;; sets a run variable directly; everything else sets it by a request that the journal records.
+;;; their own. Values are plain data, which no code modifies, or things and robots. Code within
+;;; ticks sets a run variable directly; everything else sets it by a request that the journal
+;;; records.
+;;;
+;;; An entry is a list (name value use). USE is :SET once the run has set the variable, :READ if the
+;;; run has only read it, and NIL before. Only variables that were set are in the digest, so that
+;;; definitions for other runs do not change it.
 
 (define-record (variable-definition (:constructor make-variable-definition (name function)))
   "The definition of a run variable."
@@ -91,20 +96,22 @@
 (defun find-variable-entry (name world)
   (assoc name (the list (world-run-variables world)) :test #'eq))
 
-(defun add-variable-entry (name value set-p world)
+(defun add-variable-entry (name value use world)
   "Add the run variable NAME to WORLD, unless it is there already. Return its entry."
   (with-lock (*run-variables-lock*)
     (or (find-variable-entry name world)
-        (first (push (list name value set-p) (world-run-variables world))))))
+        (first (push (list name value use) (world-run-variables world))))))
 
 (defun initialize-run-variables (simulation)
   "Compute the initial values of the run variables in SIMULATION, the current run, which begins. An
 error in an init form is signalled when the variable is first used, since many runs do not use it."
-  (let ((world (simulation-world simulation)))
+  (let* ((world (simulation-world simulation)) (noted (world-noted-names world)))
     (dolist (name (defined-names *run-variables*))
       (unless (find-variable-entry name world)
         (handler-case (add-variable-entry name (initial-value name world) nil world)
-          (error ()))))))
+          (error ()))))
+    ;; What an init form looks for in vain is no hint for messages of this run.
+    (setf (world-noted-names world) noted)))
 
 ;;; Reading and setting.
 
@@ -120,16 +127,18 @@ error in an init form is signalled when the variable is first used, since many r
   "Return the value of the run variable NAME in the current run."
   (let ((world (world-of-current-run name)))
     (definition-of-variable name)
-    (copied-value
-     (second (or (find-variable-entry name world)
-                 (add-variable-entry name (initial-value name world) nil world))))))
+    (let ((entry (or (find-variable-entry name world)
+                     (add-variable-entry name (initial-value name world) :read world))))
+      ;; Another thread may be setting the variable.
+      (unless (third entry) (swap-if-eq (car (cddr entry)) nil :read))
+      (copied-value (second entry)))))
 
 (defun store-run-variable (name value world)
   (let ((entry (find-variable-entry name world)))
     (if entry
         (setf (second entry) value
-              (third entry) t)
-        (add-variable-entry name value t world))))
+              (third entry) :set)
+        (add-variable-entry name value :set world))))
 
 (defun set-run-variable (name value)
   "Set the run variable NAME to VALUE in the current run. Return VALUE."
@@ -206,21 +215,22 @@ MALFORMED-DEFINITION if NAME is another variable."
 (defun entries-by-name (entries)
   (sort (copy-list entries) #'string< :key (lambda (entry) (qualified-name (first entry)))))
 
+(defun run-variables-used (world &rest uses)
+  "Return the entries of the run variables in WORLD with one of USES, sorted by qualified name."
+  (entries-by-name (remove-if-not (lambda (entry) (member (third entry) uses))
+                                  (world-run-variables world))))
+
 (addition run-variables)
 (defun run-variables (&optional (simulation (current-simulation)))
-  "Return a list (symbol value) for each run variable that has a value in SIMULATION, sorted by
+  "Return a list (symbol value) for each run variable that SIMULATION has read or set, sorted by
 qualified name. Signals WRONG-ARGUMENT."
   (let ((world (simulation-world (resolve-simulation simulation 'run-variables))))
-    (loop for (name value) in (entries-by-name (world-run-variables world))
+    (loop for (name value) in (run-variables-used world :read :set)
           collect (list name (copied-value value)))))
-
-(defun run-variables-set (world)
-  "Return the entries of the run variables in WORLD that were set, sorted by qualified name."
-  (entries-by-name (remove-if-not #'third (world-run-variables world))))
 
 ;; Digests of runs without run variables are as they were before there were such variables.
 (defmethod digest-state :after ((world world) digest)
-  (loop for (name value) in (run-variables-set world)
+  (loop for (name value) in (run-variables-used world :set)
         do (digest-add digest (list (qualified-name name) value))))
 
 (defun shown-value (value)
@@ -257,13 +267,16 @@ qualified name. Signals WRONG-ARGUMENT."
   "Signal an error unless the run variables of WORLD, read from a file, are valid and defined."
   (let ((entries (world-run-variables world)))
     (must-hold (proper-list-of-p (lambda (entry)
-                                   (and (typep entry '(cons symbol (cons t (cons boolean null))))
+                                   (and (proper-list-p entry)
+                                        (= 3 (length entry))
                                         (first entry)
-                                        (run-variable-value-p (second entry) world)))
+                                        (symbolp (first entry))
+                                        (run-variable-value-p (second entry) world)
+                                        (member (third entry) '(nil :read :set))))
                                  entries)
                "the run variables are invalid")
     (must-hold (= (length entries) (length (remove-duplicates entries :key #'first)))
                "a run variable has two values")
-    (loop for (name nil set-p) in entries when set-p do (definition-of-variable name))
+    (loop for (name nil use) in entries when use do (definition-of-variable name))
     (setf (world-run-variables world)
           (remove-if-not (lambda (entry) (get (first entry) 'run-variable)) entries))))

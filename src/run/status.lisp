@@ -149,7 +149,7 @@ the current simulation. The properties:
   interrupted them
 - :FAILED, the value of LAST-FAILURE
 - :DESIGNATORS, a list of property lists, one for each designator
-- :VARIABLES, if the run has run variables: a property list with :NAME and :VALUE for each
+- :VARIABLES, if the run has used run variables: a property list with :NAME and :VALUE for each
 Nothing in the run changes. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
   (let ((robot (resolve-robot robot 'status)))
     (ask robot (lambda () (robot-status robot)))))
