@@ -278,7 +278,7 @@
         (run:run-ticks 20 fork)
         (is (= (run:state-digest) (run:state-digest fork)))
         (is (= 1104 (rpl:task-result waiting)))
-        (is (= 1105 (rpl:task-result counting)))
+        (is (= 1104 (rpl:task-result counting)))
         (run:rewind 19)
         (run:run-ticks 19)
         (is (= (run:state-digest) (run:state-digest fork)))
@@ -370,10 +370,10 @@
     (is (null (getf (run:status otter) :variables)))
     (is (equal '(0 ()) (list *catch* *haul*)))
     (push otter *haul*)
-    (let ((shown '((:name "*catch*" :value 0) (:name "*haul*" :value ("#<OTTER>")))))
+    (let ((shown '((:name "*catch*" :value 0) (:name "*haul*" :value ("OTTER")))))
       (is (equal shown (getf (run:status otter) :variables)))
       (is (equal (list (list '*catch* 0) (list '*haul* (list otter))) (run:run-variables)))
-      (is (search "Run variables: *catch* 0; *haul* (#<otter>)"
+      (is (search "Run variables: *catch* 0; *haul* (\"OTTER\")"
                   (with-output-to-string (out) (describe time:*simulation* out))))))
   (is (find "*catch*:           5"
             (type-to 'otter "(setf ars-magna.tests::*catch* 5)" "status") :test #'string=)))
