@@ -4,16 +4,22 @@
 
 (export '(share-warnings))
 
-;;; A run and its forks share a record: a list of the message queue of the original, and of the
-;;; variables that a warning has named. So the warning appears once, where users read it, and not in
+;;; A run and its forks share a record. So a warning appears once, where users read it, and not in
 ;;; each of the forks that a plan makes to look ahead.
+
+(define-record (warning-record (:constructor make-warning-record (queue)))
+  "The record of warnings about global variables, shared by a run and its forks."
+  (queue nil message-queue "the message queue of the original run")
+  (names '() list "the variables that warnings have named" :writable))
+
+(define-shared-types warning-record)
 
 (defun share-warnings (simulation fork)
   "Make FORK, a new fork of SIMULATION, share the record of warnings about variables."
   (setf (simulation-shared-warnings fork)
         (or (simulation-shared-warnings simulation)
             (setf (simulation-shared-warnings simulation)
-                  (list (simulation-messages simulation))))))
+                  (make-warning-record (simulation-messages simulation))))))
 
 (defun warn-of-shared-variable (name)
   "Warn once, in the original run, if this code runs in a fork: it has set the special variable
@@ -23,9 +29,9 @@ NAME. While REWIND repeats a run there is no warning, since the variable may be 
                (fork-p simulation)
                (not (eq *repeated-timeline* (simulation-timeline simulation))))
       (let ((record (simulation-shared-warnings simulation)))
-        (when (and record (not (member name (rest record) :test #'eq)))
-          (push name (rest record))
-          (let ((*message-queue* (first record)))
+        (when (and record (not (member name (warning-record-names record) :test #'eq)))
+          (push name (warning-record-names record))
+          (let ((*message-queue* (warning-record-queue record)))
             (queue-notable-warning
              (format nil "A plan or continuation in a fork of this run has set ~(~A~), a variable ~
                           that all runs share. Define it by (define-run-variable ~:*~(~A~) ...), ~
