@@ -349,7 +349,8 @@
                          (dotimes (n 2) (run:with-fork () (run:run-ticks 3)))))))
     (is (equal '("*tallies*")
                (warned (lambda ()
-                         (ars-magna.rpl-projecting:project '(tally-for-all) :trials 3 :horizon 5)))))))
+                         (ars-magna.rpl-projecting:project '(tally-for-all)
+                                                           :trials 3 :horizon 5)))))))
 
 (test fork.warns-of-global-variables-that-continuations-set
   (flet ((warned (continuation)
