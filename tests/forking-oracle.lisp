@@ -16,7 +16,7 @@
     world::place world::rule ars-magna.ways:terrain
     robot::blueprint command:command command::manipulation
     command::manipulation-method time::interruption
-    tasks::chronicle tasks::issue fluents::realm (simple-vector 0))
+    tasks::chronicle tasks::issue fluents::realm run::warning-record (simple-vector 0))
   "The types of what a run and its forks may share, or of what notes what has been.")
 
 (defun everybodys-p (object)

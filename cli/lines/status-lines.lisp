@@ -118,6 +118,8 @@
   (write-commands-in-progress status)
   (let ((thinking (thinking-cost-text status)))
     (when thinking (format t "~19A~A~%" "Thinking:" thinking)))
+  (loop for (nil name nil value) in (getf status :variables)
+        do (write-trimmed-line "~18A ~A" (format nil "~A:" name) (fact-text value)))
   (format t "Designators:~%")
   (mapc #'write-designator (getf status :designators)))
 
@@ -139,8 +141,9 @@ left out" :optional))
     (:seeing)
     "Show the robot's state: position, last change of position (real and estimated), heading, speed,
 turning speed, what its cameras see now, the last place sensed, its designators, the commands in
-progress and who issued them, the last interruption, and the cost of thinking if it was changed. A
-line tells if no ticks pass now. STATUS ALL shows each robot of the run. In Lisp: (status)."
+progress and who issued them, the last interruption, the cost of thinking if it was changed, and the
+values of run variables. A line tells if no ticks pass now. STATUS ALL shows each robot of the run.
+In Lisp: (status)."
   (let ((robot (session-robot)) (all-p (and which (string-equal which "all"))))
     (when (and which (not all-p)) (setf robot (robot-here-named which)))
     (with-time-stopped
@@ -188,13 +191,14 @@ line tells if no ticks pass now. STATUS ALL shows each robot of the run. In Lisp
 ;;; the kinds of such values are listed here by key.
 
 (defparameter *keys-by-json-kind*
-  '((:objects :cameras :hands :bins :sensors :under-way :interrupted :designators)
+  '((:objects :cameras :hands :bins :sensors :under-way :interrupted :designators :variables)
     (:lists :view :contents :slots :data)
     (:truths :live :closed))
   "Lists (kind key...): keys of (status) that JSON shows as arrays of objects, arrays or booleans.")
 
 (defun lists-to-arrays (value)
-  (if (and (consp value) (null (cdr (last value))))
+  (if (or (simple-vector-p value)
+          (and (consp value) (null (cdr (last value)))))
       (map 'vector #'lists-to-arrays value)
       value))
 

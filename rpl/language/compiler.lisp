@@ -98,8 +98,23 @@
                               part)
                   do (setf last part))))))
 
+(defvar *noted-assignments* '()
+  "The forms in the current leaf whose assignments are noted when they run.")
+
+(defun noting-form (form environment)
+  "If FORM assigns users' global variables, return a form that also notes that; else NIL."
+  (when (and (consp form)
+             (eq 'setq (first form))
+             (not (member form *noted-assignments* :test #'eq)))
+    (let ((names (loop for (name) on (rest form) by #'cddr
+                       when (users-global-p name environment) collect name)))
+      (when names
+        (push form *noted-assignments*)
+        `(progn ,@(loop for name in names collect `(note-assignment ',name)) ,form)))))
+
 (defun leaf-meaning (form environment)
-  (cond ((global-symbol-macro-p form environment)
+  (cond ((noting-form form environment))
+        ((global-symbol-macro-p form environment)
          (note-plan-text (macroexpand-1 form environment)))
         ((not (and (consp form) (symbolp (first form)) (plan-text-p form))) form)
         ((plan-making-form-p form) (values form t))
@@ -120,7 +135,7 @@
 (defun as-lisp (form scope)
   (cond ((and (atom form) (not (symbol-macro-p form (scope-environment scope)))) form)
         (t (warn-of-leaf-mistakes form)
-           (let ((*fluents-here* (scope-fluents scope)))
+           (let ((*fluents-here* (scope-fluents scope)) (*noted-assignments* '()))
              (walk-form form (scope-environment scope) #'leaf-meaning)))))
 
 (defun condition-lambda (form scope)

@@ -82,9 +82,11 @@ of the function that it calls; else NIL. The layer that defines commands has a m
   (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
         when (and entry (not (entry-variable entry)))
-          return (format nil "It is the name of ~:[a~;an~] ~A: write '~(~A~)."
-                          (find (char (registry-usual-name registry) 0) "aeiou")
-                          (registry-usual-name registry) (unqualified-text name))))
+          return (if (same-name-p 'run-variable (registry-kind registry))
+                     "Define a run variable before the code that uses it, and compile that again."
+                     (format nil "It is the name of ~:[a~;an~] ~A: write '~(~A~)."
+                             (find (char (registry-usual-name registry) 0) "aeiou")
+                             (registry-usual-name registry) (unqualified-text name)))))
 
 (defun similar-variable (name)
   "Return the name, in lower case, of a variable that the unbound symbol NAME may misspell; or NIL."

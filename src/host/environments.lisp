@@ -3,7 +3,8 @@
 (in-package :ars-magna.host)
 
 (export '(function-argument-types comma-p form-behind-comma bound-in-walk-p variable-kind
-          local-variable-p known-variable-p special-variable-p local-function-p known-function-p
+          local-variable-p known-variable-p special-variable-p bound-in-thread-p set-symbol-macro
+          remove-symbol-macro local-function-p known-function-p
           macro-expander lisp-symbol-p extended-environment evaluate-form walk-form expand-in-walk
           users-symbol-p variable-name-p defvar-forms variable-name-trouble
           undefined-name-of-warning
@@ -64,6 +65,20 @@ and so on, or NIL if it is not known."
 (defun special-variable-p (symbol environment)
   "True if SYMBOL is a special variable in ENVIRONMENT."
   (eq :special (variable-kind symbol environment)))
+
+(defun bound-in-thread-p (symbol)
+  "True if this thread has a binding of the special variable SYMBOL, besides its global value."
+  (nth-value 1 (sb-thread:symbol-value-in-thread symbol sb-thread:*current-thread* nil)))
+
+(defun set-symbol-macro (name expansion)
+  "Define NAME as a global symbol macro for the form EXPANSION. Return NAME."
+  (eval `(define-symbol-macro ,name ,expansion)))
+
+(defun remove-symbol-macro (name)
+  "Make NAME, a global symbol macro, a symbol that is no variable."
+  (when (eq :symbol-macro (variable-kind name))
+    (internal (:sb-int #:clear-info) :variable :kind name)
+    (internal (:sb-int #:clear-info) :variable :macro-expansion name)))
 
 ;;; Functions and macros.
 

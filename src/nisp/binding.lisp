@@ -47,9 +47,11 @@ The form is like LAMBDA, but types may follow the parameters, and unused paramet
   (let ((lambda-list (untyped-lambda-list lambda-list "continuation")))
     (check-continuation lambda-list body)
     (warn-of-wrong-error-codes (first lambda-list) body)
-    `#'(lambda ,lambda-list
-         (declare (ignorable ,@(lambda-list-variables lambda-list)))
-         ,@body)))
+    (multiple-value-bind (forms declarations) (parse-body body)
+      `#'(lambda ,lambda-list
+           (declare (ignorable ,@(lambda-list-variables lambda-list)))
+           ,@declarations
+           (noting-assignments () ,@forms)))))
 
 (eval-when (:compile-toplevel :load-toplevel :execute)
   (defun expand-procedure (operator name definition)

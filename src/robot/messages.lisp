@@ -13,48 +13,14 @@
 
 ;;; Messages.
 
-(defconstant +longest-message+ 10000
-  "The most elements, characters and levels of nesting together in a message.")
-(defconstant +deepest-message+ 50 "The deepest nesting of lists and vectors in a message.")
-(defconstant +longest-message-integer+ 3000 "The most bits of an integer in a message.")
-
-(defun plain-atom-p (atom)
-  "True if ATOM is a number, symbol or character that a journal can contain."
-  (typecase atom
-    (integer (<= (integer-length atom) +longest-message-integer+))
-    (ratio (and (plain-atom-p (numerator atom)) (plain-atom-p (denominator atom))))
-    (float (finite-p atom))
-    (symbol (and (symbol-package atom) (not (search "::" (package-name (symbol-package atom))))))
-    (character t)))
-
 (defun message-datum-p (datum)
-  "True if DATUM can be sent: numbers, symbols, characters, strings, and proper lists and simple
-vectors of these, of limited size."
-  (let ((left +longest-message+))
-    (labels ((charge (count)
-               (when (minusp (decf left count)) (return-from message-datum-p nil)))
-             (check (datum depth)
-               (when (> depth +deepest-message+) (return-from message-datum-p nil))
-               (typecase datum
-                 (null)
-                 (cons (loop while (consp datum)
-                             do (charge 1)
-                                (check (pop datum) (1+ depth)))
-                  (when datum (return-from message-datum-p nil)))
-                 (string (charge (length datum)))
-                 (simple-vector (charge (length datum))
-                  (loop for element across datum do (check element (1+ depth))))
-                 (t (unless (plain-atom-p datum) (return-from message-datum-p nil))))))
-      (check datum 1)
-      t)))
+  "True if DATUM can be sent: plain data, see PLAIN-DATUM-P."
+  (plain-datum-p datum))
 
 (defun unsendable-text (datum)
   "Return a text about what to send instead of DATUM."
   (typecase datum
-    ((or sequence number symbol)
-     (format nil "at most ~D elements and characters, nested at most ~D deep, lists without a ~
-                  dotted tail, simple vectors, finite numbers, symbols with a package"
-             +longest-message+ +deepest-message+))
+    ((or sequence number symbol) (plain-data-limits-text))
     (t "send the name of a robot or thing, or other data about it, not the object")))
 
 (define-argument-type 'message #'message-datum-p

@@ -11,14 +11,16 @@
 ;;;
 ;;; A run depends on what it uses: its map and robots; the kickers and attributes of its things; the
 ;;; place types, substances and users' map clauses in the map; the robots' parts of users' kinds;
-;;; the kickers, manipulations and users' commands in its journal. It also depends on everything in
-;;; the files that define these. Functions in other files, or typed, are not covered.
+;;; the kickers, manipulations and users' commands in its journal; the run variables that it has
+;;; read or set. It also depends on everything in the files that define these. Functions in other
+;;; files, or typed, are not covered.
 
 (defparameter *definition-kinds*
   (list (cons :map *maps*) (cons :robot *robots*) (cons :kicker *kickers*)
         (cons :map-clause *map-clauses*) (cons :place-type *place-types*)
         (cons :attribute *attributes*) (cons :substance *substances*)
-        (cons :part *object-kinds*) (cons :command *commands*))
+        (cons :part *object-kinds*) (cons :command *commands*)
+        (cons :run-variable *run-variables*))
   "An alist of the kinds of definitions and their registries. Manipulations are not in the list:
 their methods are compared instead.")
 
@@ -83,6 +85,8 @@ function that returns a thing's list of entries, NAME one that returns an entry'
               (loop for robot in (simulation-robots simulation)
                     append (cl:map 'list #'type-of (robot-sensors robot)))))
       (:command (user-defined-commands simulation))
+      (:run-variable (mapcar #'first (run-variables-used (simulation-world simulation)
+                                                         :read :set)))
       (:substance (elements-at-indices (map-substances map) (map-substance-types map))))))
 
 (defun definition-of-entry (kind entry)

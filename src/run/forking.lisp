@@ -93,6 +93,7 @@ FORK-OPTIONS. Signals MISUSE inside a tick, and CANNOT-FORK."
         (journal (simulation-journal simulation)))
     (setf (simulation-messages copy) (copy-message-queue (simulation-messages simulation))
           (simulation-trails copy) (simulation-trails simulation))
+    (share-warnings simulation copy)
     (when journal
       (setf (simulation-journal copy) (copied-journal journal (simulation-tick simulation))))
     (finish-tick copy (timeline-phase (simulation-timeline simulation)))

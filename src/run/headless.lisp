@@ -82,6 +82,7 @@ KEEP says how many forks the run keeps, see KEEP-FORKS. The run is over at the e
          (lambda ()
            (call-reporting-errors
             (lambda ()
+              (initialize-run-variables simulation)
               (when keep (keep-forks keep simulation))
               (funcall function))
             simulation)))

@@ -163,6 +163,7 @@ MAKE-CURRENT-SIMULATION. This thread owns WORLD. Return the run."
     (remove-errors-of-runs (resident-message-queue)
                            (lambda (run) (and run (simulation-over (latest-successor run)))))
     (make-current-simulation simulation everywhere)
+    (initialize-run-variables simulation)
     (keep-forks keep simulation)
     (start-clock simulation :rate rate :real (eq thinking :real))))
 

@@ -145,6 +145,7 @@ Parameters that are not in SETTINGS get their defaults."
                    (equal (world-roster world) (sorted-by-full-name (world-robots world))))
                "the world's robots are not in order")
     (dolist (robot (world-robots world)) (check-robot robot world))
+    (check-run-variables world)
     (dolist (request requests)
       (check-request request)
       (let ((resource (resource-of-request request)))

@@ -33,6 +33,8 @@ CL:RANDOM: the threads of a run that is or was live do not share one" :export)
    (past nil t "the forks and acts that the simulation keeps for rewinding, or NIL" :export)
    (line nil list "a list of one element, the latest successor of the simulation, shared by all runs
 that were rewound to it; or NIL if there was no rewinding")
+   (shared-warnings nil t "the record of warnings about variables that the simulation shares with
+its forks, or NIL; see shared-variables.lisp")
    (output nil (or null stream) "the stream of an editor to which the simulation's threads write, or
 NIL")
    (messages *message-queue* message-queue

@@ -111,7 +111,9 @@ slots with the roles :STATE and :MEMORY."))
            :under-way (mapcan #'command-in-progress-status resources)
            :interrupted (mapcan #'interrupted-status resources)
            :failed (last-failure robot)
-           :designators (mapcar #'designator-status (live-designators robot))))))
+           :designators (mapcar #'designator-status (live-designators robot)))
+     (let ((variables (shown-run-variables (robot-simulation robot))))
+       (and variables (list :variables variables))))))
 
 (defun default-robot (simulation)
   "Return the robot of SIMULATION that the prompt commands, else its first robot, or NIL."
@@ -147,6 +149,7 @@ the current simulation. The properties:
   interrupted them
 - :FAILED, the value of LAST-FAILURE
 - :DESIGNATORS, a list of property lists, one for each designator
+- :VARIABLES, if the run has used run variables: a property list with :NAME and :VALUE for each
 Nothing in the run changes. Signals UNKNOWN-NAME, and MISUSE if there is no robot."
   (let ((robot (resolve-robot robot 'status)))
     (ask robot (lambda () (robot-status robot)))))

@@ -38,8 +38,14 @@ in" :part)
    (kicker-groups '() list "the groups of kickers with the same probability" :part)
    (kicker-tick 0 tick-count "the number of ticks in which kickers have run")
    (due-kickers '() list "the kickers to run in the next tick by request" :part))
+  ;; State as well, but only variables that were set are digested, by a method in the layer of runs.
+  (:memory
+   (run-variables '() t
+                  "the run variables of the world's run, lists (name value use), the newest first"
+                  :export))
   (:scratch
-   (noted-names '() list "the keys of the warnings given so far; see FIRST-WARNING-FOR-KEY-P")
+   (noted-names '() list "the keys of the warnings given so far; see FIRST-WARNING-FOR-KEY-P"
+                :export)
    (writer nil t "the thread that is changing the world, or NIL" :export))
   ;; While it is NIL, each tick checks.
   (:link

@@ -1,0 +1,282 @@
+;;;; run-variables.lisp -- DEFINE-RUN-VARIABLE: variables with a separate value in each run.
+
+(in-package :ars-magna.run)
+
+(export '(initialize-run-variables run-variables-used shown-run-variables))
+
+;;; A run variable is a symbol macro, not a special variable: any thread reads the value of its
+;;; current run. The values are a slot of the run's world, so forks, rewinds and saved runs have
+;;; their own. Values are plain data, which no code modifies, or things and robots. Code within
+;;; ticks sets a run variable directly; everything else sets it by a request that the journal
+;;; records.
+;;;
+;;; An entry is a list (name value use). USE is :SET once the run has set the variable, :READ if the
+;;; run has only read it, and NIL before. Only variables that were set are in the digest, so that
+;;; definitions for other runs do not change it.
+
+(define-record (variable-definition (:constructor make-variable-definition (name function)))
+  "The definition of a run variable."
+  (name nil symbol "the name of the run variable")
+  (function nil function "the function that returns the initial value"))
+
+(define-registry run-variable "run variable" :object-p variable-definition-p :by-symbol t
+  :internal t)
+
+;; The symbol has the definition, so that reading a variable is fast.
+(defmethod undo-definition ((definition variable-definition))
+  (let ((name (variable-definition-name definition)))
+    (remprop name 'run-variable)
+    (remove-symbol-macro name)))
+
+(defmethod redo-definition ((definition variable-definition))
+  (let ((name (variable-definition-name definition)))
+    (unless (eq definition (get name 'run-variable))
+      (setf (get name 'run-variable) definition))
+    (unless (run-variable-name-p name) (set-symbol-macro name `(run-variable ',name)))))
+
+(defun definition-of-variable (name)
+  (or (get name 'run-variable)
+      (reject-name "run variable" name (names-to-suggest *run-variables*))))
+
+;;; Values.
+
+(defun object-of-world-p (object world)
+  "True if OBJECT is a thing or robot that is or was in WORLD."
+  (typecase object
+    (thing (eq world (thing-world object)))
+    (robot (eq world (robot-world object)))))
+
+(defun run-variable-value-p (value world)
+  (plain-datum-p value (lambda (object) (object-of-world-p object world))))
+
+(defun values-expected-text (value)
+  "Return a text about what a run variable can have instead of VALUE."
+  (format nil "plain data (numbers, symbols, characters, strings, lists, vectors), or things and ~
+               robots of the current run: ~A"
+          (typecase value
+            ((or thing robot) "(counterpart OBJECT) returns the object of the current run")
+            (hash-table "a list of lists (key value) can replace a table")
+            (function "a symbol can name a function")
+            (t (plain-data-limits-text)))))
+
+(defun check-run-variable-value (name value world)
+  (unless (run-variable-value-p value world)
+    (reject-argument 'setf name value (values-expected-text value))))
+
+(defun copied-value (value)
+  "Return VALUE, or a copy of it if it is a list, vector or string, which users may modify."
+  (if (typep value '(or cons vector)) (copy-argument 'setf "value" value) value))
+
+;;; Initial values. They belong to the run, but are not in digests.
+
+(defvar *run-variables-lock* (make-lock "run variables"))
+
+(defvar *variables-being-initialized* '()
+  "The names of the run variables whose initial values this thread computes.")
+
+(defun dice-for-initial-value (name world)
+  "Return the random state for the initial value of NAME, which depends on the seed of WORLD."
+  (seeded-random-state (dice-state (make-dice (world-seed world) (qualified-name name)))))
+
+(defun initial-value (name world)
+  "Return the value of the init form of the run variable NAME in the run of WORLD."
+  (when (member name *variables-being-initialized*)
+    (reject-use "The init form of the run variable ~(~A~) uses ~:*~(~A~) itself. Use another form."
+                name))
+  (let* ((definition (definition-of-variable name))
+         (value (let ((*variables-being-initialized* (cons name *variables-being-initialized*))
+                      (*asker* (list "the init form of " name)))
+                  (with-seclusion
+                    (with-random-state ((dice-for-initial-value name world))
+                      (funcall (variable-definition-function definition)))))))
+    (check-run-variable-value name value world)
+    (copied-value value)))
+
+(declaim (inline find-variable-entry))
+(defun find-variable-entry (name world)
+  (assoc name (the list (world-run-variables world)) :test #'eq))
+
+(defun add-variable-entry (name value use world)
+  "Add the run variable NAME to WORLD, unless it is there already. Return its entry."
+  (with-lock (*run-variables-lock*)
+    (or (find-variable-entry name world)
+        (first (push (list name value use) (world-run-variables world))))))
+
+(defun initialize-run-variables (simulation)
+  "Compute the initial values of the run variables in SIMULATION, the current run, which begins. An
+error in an init form is signalled when the variable is first used, since many runs do not use it."
+  (let* ((world (simulation-world simulation)) (noted (world-noted-names world)))
+    (dolist (name (defined-names *run-variables*))
+      (unless (find-variable-entry name world)
+        (handler-case (add-variable-entry name (initial-value name world) nil world)
+          (error ()))))
+    ;; What an init form looks for in vain is no hint for messages of this run.
+    (setf (world-noted-names world) noted)))
+
+;;; Reading and setting.
+
+(defun world-of-current-run (name)
+  "Return the world of the current run. Signals MISUSE, about the run variable NAME, without a run."
+  (if *simulation*
+      (simulation-world *simulation*)
+      (reject-use "The run variable ~(~A~) has a value only in a run. ~A" name
+                  (or (other-thread-run-text)
+                      "Use it in (with-simulation (ROBOT) ...), or after (simulator ROBOT)."))))
+
+(defun run-variable (name)
+  "Return the value of the run variable NAME in the current run."
+  (let ((world (world-of-current-run name)))
+    (definition-of-variable name)
+    (let ((entry (or (find-variable-entry name world)
+                     (add-variable-entry name (initial-value name world) :read world))))
+      ;; Another thread may be setting the variable.
+      (unless (third entry) (swap-if-eq (car (cddr entry)) nil :read))
+      (copied-value (second entry)))))
+
+(defun store-run-variable (name value world)
+  (let ((entry (find-variable-entry name world)))
+    (if entry
+        (setf (second entry) value
+              (third entry) :set)
+        (add-variable-entry name value :set world))))
+
+(defun set-run-variable (name value)
+  "Set the run variable NAME to VALUE in the current run. Return VALUE."
+  (let ((world (world-of-current-run name)))
+    (definition-of-variable name)
+    (check-run-variable-value name value world)
+    (let ((kept (copied-value value)))
+      (changing (world set-run-variable name kept)
+        (store-run-variable name kept world)))
+    value))
+
+(define-operator 'set-run-variable '(name datum) #'set-run-variable)
+
+(defun (setf run-variable) (value name)
+  (set-run-variable name value))
+
+;;; Defining.
+
+(defun run-variable-name-p (name)
+  "True if the symbol NAME is the symbol macro of a run variable."
+  (and (eq :symbol-macro (variable-kind name))
+       (equal `(run-variable ',name) (macroexpand-1 name))))
+
+(defun check-run-variable-name (name)
+  (let ((title (definition-title "define-run-variable" name)))
+    (cond ((or (not (symbolp name)) (null name) (keywordp name) (null (symbol-package name)))
+           (reject-clause title name "a symbol as the name of a run variable"))
+          ((run-variable-name-p name))
+          ((eq :special (variable-kind name))
+           (reject-clause title name
+                          (format nil "a name that is no variable yet. ~(~A~) is a special ~
+                                       variable, as DEFVAR makes: remove the DEFVAR, then restart ~
+                                       Lisp or evaluate (unintern '~:*~(~A~)), and load your files"
+                                  name)))
+          ((not (variable-name-p name))
+           (reject-clause title name
+                          (format nil "a name that is free; ~A ~A" name
+                                  (variable-name-trouble name)))))))
+
+(defun install-run-variable (name function documentation)
+  "Define the run variable NAME, whose init form is the body of FUNCTION. Return NAME."
+  (let ((definition (make-variable-definition name function)))
+    (register *run-variables* name definition)
+    (redo-definition definition)
+    (setf (documentation name 'variable) documentation)
+    name))
+
+(addition define-run-variable)
+(define-user-macro define-run-variable (name init &optional documentation)
+  "Define NAME as a variable with a separate value in each run: each WITH-SIMULATION, SIMULATOR,
+fork and trial has its own, also after REWIND, in saved runs and in replays. SETF, INCF and PUSH set
+it; code sees at once what it has set. Values are plain data, or things and robots of the run; in a
+fork these are the counterparts.
+- INIT is evaluated when a run begins; for a variable defined later, when the run first uses it.
+  RANDOM in INIT depends on the run's seed. INIT must not change the run.
+- The journal records what plans, continuations and other programs set. Kickers, events and
+  manipulations set the variable within ticks, which a replay repeats.
+- Reading a list, vector or string returns a copy. Set the variable to change its value.
+- LET of NAME makes an ordinary local variable.
+- A new definition does not change the value in runs that have begun.
+Using NAME without a run signals MISUSE, setting it to another object WRONG-ARGUMENT. Signals
+MALFORMED-DEFINITION if NAME is another variable."
+  (check-run-variable-name name)
+  (unless (typep documentation '(or null string))
+    (reject-clause (definition-title "define-run-variable" name) documentation
+                   "(define-run-variable name init [string])"))
+  `(progn
+     (eval-when (:compile-toplevel :load-toplevel :execute)
+       (define-symbol-macro ,name (run-variable ',name)))
+     (install-run-variable ',name (lambda () ,init) ,documentation)))
+
+;;; Showing, digesting, checking.
+
+(defun entries-by-name (entries)
+  (sort (copy-list entries) #'string< :key (lambda (entry) (qualified-name (first entry)))))
+
+(defun run-variables-used (world &rest uses)
+  "Return the entries of the run variables in WORLD with one of USES, sorted by qualified name."
+  (entries-by-name (remove-if-not (lambda (entry) (member (third entry) uses))
+                                  (world-run-variables world))))
+
+(addition run-variables)
+(defun run-variables (&optional (simulation (current-simulation)))
+  "Return a list (symbol value) for each run variable that SIMULATION has read or set, sorted by
+qualified name. Signals WRONG-ARGUMENT."
+  (let ((world (simulation-world (resolve-simulation simulation 'run-variables))))
+    (loop for (name value) in (run-variables-used world :read :set)
+          collect (list name (copied-value value)))))
+
+;; Digests of runs without run variables are as they were before there were such variables.
+(defmethod digest-state :after ((world world) digest)
+  (loop for (name value) in (run-variables-used world :set)
+        do (digest-add digest (list (qualified-name name) value))))
+
+(defun shown-value (value)
+  "Return VALUE with its things and robots replaced by strings."
+  (typecase value
+    (cons (mapcar #'shown-value value))
+    (simple-vector (cl:map 'simple-vector #'shown-value value))
+    ((or number symbol character string) value)
+    (t (princ-to-string value))))
+
+(defun shown-run-variables (simulation)
+  "Return a list of property lists, :NAME and :VALUE, plain data, for SIMULATION's run variables."
+  (let* ((variables (run-variables simulation)) (names (mapcar #'first variables)))
+    (loop for (name value) in variables
+          collect (list :name (string-downcase (name-label name names))
+                        :value (shown-value value)))))
+
+(define-facts (simulation simulation)
+  "Run variables" (let ((variables (shown-run-variables simulation)))
+                    (and variables
+                         (format nil "~{~A~^; ~}"
+                                 (loop for variable in variables
+                                       collect (destructuring-bind (&key name value) variable
+                                                 (format nil "~A ~A" name (fact-text value))))))))
+
+(define-facts (variable-definition definition)
+  "Value in the current run" (let ((entry (and *simulation*
+                                               (assoc (variable-definition-name definition)
+                                                      (run-variables *simulation*)))))
+                               (and entry (fact-text (second entry)))))
+
+;; Unused variables of the Lisp that saved the run need not be defined here.
+(defun check-run-variables (world)
+  "Signal an error unless the run variables of WORLD, read from a file, are valid and defined."
+  (let ((entries (world-run-variables world)))
+    (must-hold (proper-list-of-p (lambda (entry)
+                                   (and (proper-list-p entry)
+                                        (= 3 (length entry))
+                                        (first entry)
+                                        (symbolp (first entry))
+                                        (run-variable-value-p (second entry) world)
+                                        (member (third entry) '(nil :read :set))))
+                                 entries)
+               "the run variables are invalid")
+    (must-hold (= (length entries) (length (remove-duplicates entries :key #'first)))
+               "a run variable has two values")
+    (loop for (name nil use) in entries when use do (definition-of-variable name))
+    (setf (world-run-variables world)
+          (remove-if-not (lambda (entry) (get (first entry) 'run-variable)) entries))))
