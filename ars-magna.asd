@@ -48,7 +48,7 @@
     :components ((:file "package") (:file "parts") (:file "bodies") (:file "odometer")
                  (:file "sight") (:file "designator") (:file "motion") (:file "tracks")
                  (:file "inside") (:file "making") (:file "defrobot") (:file "own-changes")
-                 (:file "messages") (:file "rays")
+                 (:file "messages") (:file "thoughts") (:file "rays")
                  (:file "matching") (:file "sightings") (:file "scanning") (:file "tending")
                  (:file "soundness")))
    (:module "src/command" :serial t
@@ -58,6 +58,7 @@
                  (:file "patterns")
                  (:file "manipulations") (:file "manipulating") (:file "looking")
                  (:file "withdrawing") (:file "approaching") (:file "thinking") (:file "sending")
+                 (:file "stepping")
                  (:file "soundness")))
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "run")
@@ -69,7 +70,7 @@
                  (:file "live") (:file "residents") (:file "sealed-lines") (:file "journal-text")
                  (:file "replay") (:file "redoing") (:file "rewinding") (:file "inventory")
                  (:file "saved-values") (:file "saving") (:file "restoring") (:file "loading")
-                 (:file "status")))
+                 (:file "status") (:file "measures")))
    (:module "src/display" :serial t
     :components ((:file "canvas-package") (:file "colors") (:file "canvas") (:file "drawing")
                  (:file "svg") (:file "package") (:file "layer") (:file "history")
@@ -230,7 +231,8 @@
       :components ((:file "own-lines") (:file "robots-lines") (:file "running-lines")
                    (:file "status-lines")
                    (:file "map-lines") (:file "world-lines") (:file "plan-lines")
-                   (:file "acting-lines") (:file "message-lines") (:file "topics") (:file "help")
+                   (:file "acting-lines") (:file "message-lines") (:file "measure-lines")
+                   (:file "topics") (:file "help")
                    (:file "picture-lines") (:file "film-lines") (:file "plot-lines")
                    (:file "other-runs")))
      (:module "shell" :serial t

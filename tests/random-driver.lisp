@@ -163,6 +163,8 @@ another command, and sometimes fails."
     ((:recipient :message) (pick '(:all keeper "helper" nobody (1 (2 at)) #(a #\b))))
     ((:number :speed :distance) (pick '(0 1 .3 .8 -1 5)))
     (:angle (pick '(0 1 -2 .1 3.2d0 1/2)))
+    (:direction (pick '(:north east "South-West" :north-west nowhere)))
+    (:duration (pick '(0 1 5/2 1/4 .3)))
     ((:ticks :tick-span :part-number) (pick '(0 1 2 5 20)))))
 
 (defun senseless-argument ()

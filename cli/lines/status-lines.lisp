@@ -93,6 +93,13 @@
           ((eq :charged mode) "charged")
           ((and (eq :free mode) (getf status :live)) "free"))))
 
+(defun thinking-text (status)
+  "Return what STATUS says of thinking as text; NIL if it is the default."
+  (let ((cost (thinking-cost-text status)) (unpaid (getf status :unpaid-thinking)))
+    (and (or cost unpaid)
+         (format nil "~@[~A~]~:[~;; ~]~@[~A of a tick is added to the next thought~]"
+                 cost (and cost unpaid) unpaid))))
+
 ;; As readings 17 and 199 say.
 (defun write-status (status)
   (loop for (label key) in '(("Position:" :position) ("D Position:" :last-move)
@@ -106,7 +113,7 @@
     (write-trimmed-line "~A:~:{ ~(~A~) ~A~:^,~}" (getf sensor :name) (getf sensor :slots)))
   (format t "~19A~A~%" "Place:" (getf status :place))
   (write-commands-in-progress status)
-  (let ((thinking (thinking-cost-text status)))
+  (let ((thinking (thinking-text status)))
     (when thinking (format t "~19A~A~%" "Thinking:" thinking)))
   (format t "Designators:~%")
   (mapc #'write-designator (getf status :designators)))

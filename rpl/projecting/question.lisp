@@ -83,6 +83,10 @@ rollout, ENDED and RESULT say how the branch or plan on trial has ended."
       (:seed (check (integerp value) "an integer"))
       (:until (check (member value '(:plan :branch)) ":plan or :branch"))
       ((:cost :tell :world) (check (function-designator-p value) "a function"))
+      (:measure (check (parse-measure value)
+                       (format nil "the name of a measure, or a list (name :over summary), with ~
+                                    the summary ~A" (summary-text)))
+       (find-measure (parse-measure value)))
       (:print))))
 
 (defun checked-options (operator options)
