@@ -128,7 +128,7 @@ If the fluent is only pulsed, the quantity is the number of pulses."
 
 (defun plottable-text ()
   "Return a text about what can be plotted."
-  (format nil "~{~A~^, ~}; a measure~@[, ~{~(~A~)~^, ~}~]; a fluent, such as robot-stopped* or ~
+  (format nil "~{~A~^, ~}~@[; a measure (~{~A~^, ~})~]; a fluent, such as robot-stopped* or ~
                hand-moved* 0; or a function of a robot, such as robot-x or (lambda (robot) ...)"
           (mapcar #'quantity-name *named-quantities*)
           (names-to-show (measure-names))))

@@ -138,9 +138,10 @@ rollouts of PROJECTION. A reason is a failure's class or condition type, or the 
 
 (addition projection-mean-measure)
 (defun projection-mean-measure (projection)
-  "Return the mean, a rational, of the measure of the option :MEASURE in the rollouts of PROJECTION,
-successful or not; NIL without :MEASURE."
-  (mean-of-measures (projection-rollouts projection)))
+  "Return the mean, a double-float, of the measure of the option :MEASURE in the rollouts of
+PROJECTION, successful or not; NIL without :MEASURE."
+  (let ((mean (mean-of-measures (projection-rollouts projection))))
+    (and mean (coerce mean 'double-float))))
 
 (defun first-error-text (projection)
   (let ((condition (some #'rollout-error (projection-rollouts projection))))

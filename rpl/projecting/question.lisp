@@ -137,6 +137,9 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
                      (loop for trial from 1 to (question-option question :trials)
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
+(defun code-of-option (option)
+  (if (eq option :measure) "the measure" (format nil "the function ~S" option)))
+
 (defun report-function-errors (question projections)
   "Report in one message in how many rollouts QUESTION's functions failed, and the first error."
   (let* ((rollouts (mapcan (lambda (projection) (copy-list (projection-rollouts projection)))
@@ -144,8 +147,9 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
          (broken (remove-if-not #'rollout-broken rollouts)))
     (when broken
       (report-user-error (rollout-error (first broken))
-                         (format nil "the function ~S of ~A, in ~D of ~D rollouts; the first error"
-                                 (rollout-broken (first broken)) (question-operator question)
+                         (format nil "~A of ~A, in ~D of ~D rollouts; the first error"
+                                 (code-of-option (rollout-broken (first broken)))
+                                 (question-operator question)
                                  (length broken) (length rollouts))))))
 
 (defun project-branches (question moment)

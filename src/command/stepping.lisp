@@ -75,7 +75,7 @@ drive to the middle of the next cell in DIRECTION."
             (t (drive-for-step operation end))))))
 
 (define-command robot-step (operation (robot robot)
-                            (direction direction "such as north or south-east; north is up"))
+                            (direction direction "where to go; north is up in pictures"))
     ()
     ((:family :moving) (:prompt "STEP-TO") (:delay 1) (:traits :drives)
      (:arguments keyword-of-direction)

@@ -2,9 +2,8 @@
 
 (in-package :ars-magna.run)
 
-(export '(call-with-temporary-dice measure-function text-of-measures measured-number
-          summary-text *summaries* summary-of-numbers
-          parse-measure))
+(export '(call-with-temporary-dice text-of-measures measured-number parse-measure summary-text
+          summary-of-numbers))
 
 ;;; The manual leaves it to users what makes a plan good. A measure is a form that computes this
 ;;; from the state of a run. Reading it never changes the dice of the run. Experiments, projections,
@@ -112,24 +111,29 @@ the summary or NIL. Return NIL if DESIGNATOR is neither."
 
 ;;; In titles.
 
-(defun value-in-title (value)
-  (cond ((and (floatp value) (finite-p value)) (plain-decimal-text value))
-        ((realp value) (princ-to-string value))
-        (t (safe-text value :escape nil :length 60))))
-
 (defun plain-decimal-text (number)
   "Return NUMBER, a float, with at most three decimals and without zeros at the end."
   (let ((text (printing-plainly () (format nil "~,3F" number))))
     (string-right-trim "." (string-right-trim "0" text))))
 
+(defun value-in-title (value)
+  (cond ((and (floatp value) (finite-p value)) (plain-decimal-text value))
+        ((realp value) (princ-to-string value))
+        (t (safe-text value :escape nil :length 60))))
+
+(defun measure-in-title (measure)
+  "Return the name and value of MEASURE as text. Signals MISUSE if its forms signal an error."
+  (format nil "~(~A~) ~A" (measure-name measure)
+          (handler-case (value-in-title (measure-value measure))
+            (error (condition)
+              (reject-use "The measure ~(~A~) cannot be computed: ~A" (measure-name measure)
+                          (text-of-condition condition))))))
+
 (defun text-of-measures (operator names)
   "Return the values of the measures NAMES, a list, as a text; NIL without NAMES. Errors name
-OPERATOR. Signals UNKNOWN-NAME and WRONG-ARGUMENT."
+OPERATOR. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and MISUSE if a value cannot be computed."
   (unless (proper-list-p names)
     (reject-argument operator :measures names "a list of names of measures"))
   (and names
        (printing-plainly ()
-         (format nil "~{~(~A~) ~A~^, ~}"
-                 (loop for name in names
-                       collect (measure-name (find-measure name))
-                       collect (value-in-title (measure-value name)))))))
+         (format nil "~{~A~^, ~}" (mapcar #'measure-in-title (mapcar #'find-measure names))))))
