@@ -49,10 +49,9 @@ the command that it has interrupted, or NIL"))
 (setf (documentation 'operation-resource 'function)
       "Return the robot or part that the operation occupies."
       (documentation 'operation-arguments 'function)
-      "Return a list of the arguments of the operation's command, without resource and continuation."
+      "Return a list of the arguments of the command, without its resource and continuation."
       (documentation 'operation-subject 'function)
-      "Return the data that the command keeps from tick to tick. Can be set, to plain data, things
-and robots.")
+      "Return the data that the command keeps from tick to tick. Can be set.")
 
 (declaim (inline operation-command operation-agenda))
 (defun operation-command (operation)

@@ -92,6 +92,7 @@ MISUSE without a simulation."
 numbers.")
 
 (defun summary-text ()
+  "Return a text that lists the summaries."
   (format nil "~{~(~S~)~#[~; or ~:;, ~]~}" (mapcar #'first *summaries*)))
 
 (defun summary-of-numbers (summary numbers)
