@@ -73,6 +73,8 @@
       (:message (make-pick '(:go "word" (1 (2 "word")))))
       ((:number :speed :distance) (make-pick '(0 1 .3 .8 2 5)))
       (:angle (make-pick '(0 1 -2 .1 3.2d0 1/2)))
+      (:direction (make-pick '(:north :south-east :west)))
+      (:duration (make-pick '(0 1/4 3/2 5 20)))
       ((:ticks :tick-span) (make-pick '(0 1 2 5 20))))))
 
 (declaim (ftype function random-deed))

@@ -152,8 +152,7 @@ another command, and sometimes fails."
 (defun sensible-argument (type)
   "Return something of the argument type called TYPE."
   (ecase (intern (string type) :keyword)
-    (:robot (any-robot))
-    (:camera (part-of-any #'robot:robot-cameras))
+    (:robot (any-robot)) (:camera (part-of-any #'robot:robot-cameras))
     ((:hand :rangefinder) (part-of-any #'robot:robot-hands))
     (:storage-bin (part-of-any #'robot:robot-bins))
     (:designator (any-designator))
@@ -163,8 +162,9 @@ another command, and sometimes fails."
     (:place-type (pick '(doorway convex concave beak "concave" nonsense)))
     (:receiving-part (pick '(:hand :bin)))
     ((:recipient :message) (pick '(:all keeper "helper" nobody (1 (2 at)) #(a #\b))))
-    ((:number :speed :distance) (pick '(0 1 .3 .8 -1 5)))
+    ((:number :speed :distance :duration) (pick '(0 1 .3 .8 -1 5)))
     (:angle (pick '(0 1 -2 .1 3.2d0 1/2)))
+    (:direction (pick '(:north east "South-West" :north-west nowhere)))
     ((:ticks :tick-span :part-number) (pick '(0 1 2 5 20)))))
 
 (defun senseless-argument ()

@@ -61,7 +61,7 @@
 
 (test think-command.wrong-arguments-are-errors
   (with-fitter (:thinking :charged)
-    (dolist (ticks '(-1 1.5 "x" nil))
+    (dolist (ticks '(-1 -1/4 "x" nil))
       (is (search "think: ticks is"
                   (wrong-argument-text (lambda () (command:think fitter ticks))))))
     (is (search "think: robot is" (wrong-argument-text (lambda () (command:think 5 5)))))

@@ -92,7 +92,7 @@
         do (is (= ticks (thinking-plan (mode) (rpl:think 7) (tick-now))))
            (is (= ticks (thinking-plan (mode) (rpl:think (rpl:create-fluent 'long 7)) (tick-now)))))
   (is (= 40 (thinking-plan (:charged) (rpl:think 2 :unit :seconds) (tick-now))))
-  (is (= 1 (thinking-plan (:charged) (rpl:think 1/2) (tick-now))))
+  (is (= 0 (thinking-plan (:charged) (rpl:think 1/2) (tick-now))))
   (is (= 0 (thinking-plan (:charged) (rpl:think 0) (tick-now)))))
 
 (test think.wrong-spans-fail

@@ -33,12 +33,20 @@ or BARE, which omits the default layers."
                 collect (list (layer-prompt-text layer)
                               (and (not (string-equal title name)) (string-downcase title))))))
 
+(defun measures-and-others (text)
+  "Return a list of those words in TEXT that name measures, and the other words as one text."
+  (let ((words (split-words (or text ""))))
+    (flet ((named-p (word) (find-measure word nil)))
+      (values (remove-if-not #'named-p words)
+              (format nil "~{~A~^ ~}" (remove-if #'named-p words))))))
+
 (define-line "PICTURE" (session (file :file "a name that ends in .svg or .png")
-                                (what :rest "pixels per cell, and names of layers; BARE"
-                                      :optional))
+                                (what :rest "pixels per cell, names of layers, BARE, and names
+of measures" :optional))
     (:seeing
      "PICTURE world.svg is usually enough. PICTURE world.png 30 GRID TRAIL has 30 pixels per cell
-and two more layers; PICTURE world.svg BARE NAMES has only the layer NAMES."
+and two more layers; PICTURE world.svg BARE NAMES has only the layer NAMES. The values of measures
+that you name are written below the title; see MEASURE."
      "Pixels per cell: from 1 to 256. By default graphics-scale*, if set; otherwise from 4 to 40, so
 that the map has at most 900 x 700 pixels."
      (format nil "Layers shown by default, except with BARE: ~A." (layers-text *picture-layers*))
@@ -46,8 +54,9 @@ that the map has at most 900 x 700 pixels."
              (layers-text (remove-if (lambda (layer) (member layer *picture-layers*))
                                      (picture-layers)))))
     "Save a picture of the world as it is now in FILE, replacing it."
-  (let ((path (apply #'save-picture (session-robot) (path-of-name file) (picture-options what))))
-    (format t "~A~%" (native-name path))))
+  (multiple-value-bind (measures others) (measures-and-others what)
+    (format t "~A~%" (native-name (apply #'save-picture (session-robot) (path-of-name file)
+                                         :measures measures (picture-options others))))))
 
 ;;;; Windows
 

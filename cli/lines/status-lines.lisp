@@ -104,6 +104,13 @@
                       (loop for (name value) in (getf sensor :slots)
                             collect (list name (sensor-value-text value)))))
 
+(defun thinking-text (status)
+  "Return what STATUS says of thinking as text; NIL if it is the default."
+  (let ((cost (thinking-cost-text status)) (unpaid (getf status :unpaid-thinking)))
+    (and (or cost unpaid)
+         (format nil "~@[~A~]~:[~;; ~]~@[~A of a tick is added to the next thought~]"
+                 cost (and cost unpaid) unpaid))))
+
 ;; As readings 17 and 199 say.
 (defun write-status (status)
   (loop for (label key) in '(("Position:" :position) ("D Position:" :last-move)
@@ -116,7 +123,7 @@
   (mapc #'write-sensor (getf status :sensors))
   (format t "~19A~A~%" "Place:" (getf status :place))
   (write-commands-in-progress status)
-  (let ((thinking (thinking-cost-text status)))
+  (let ((thinking (thinking-text status)))
     (when thinking (format t "~19A~A~%" "Thinking:" thinking)))
   (loop for (nil name nil value) in (getf status :variables)
         do (write-trimmed-line "~18A ~A" (format nil "~A:" name) (fact-text value)))

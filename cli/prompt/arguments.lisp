@@ -209,6 +209,8 @@ included. Return NIL if the choices are not known. May signal BAD-LINE, as witho
 (define-argument-choices :destination (designator-numbers))
 (define-argument-choices :designator-type '(local non-local))
 (define-argument-choices :receiving-part '(hand bin))
+(define-argument-choices :direction
+  '(north north-east east south-east south south-west west north-west))
 (define-argument-choices :recipient
   (cons "all" (names-as-typed (remove (robot-name (session-robot)) (current-robot-names)))))
 (define-argument-choices :odometer-part '(:pos :ang))

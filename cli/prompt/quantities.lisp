@@ -12,6 +12,7 @@
     (speed     :speed  "0.5, or 0.5 m/tick")
     (ticks     :time   "20, or 20 ticks")
     (tick-span :time   "20, or 20 ticks")
+    (duration  :time   "20, 1/4, or 20 ticks")
     (steps     :time   "20, or 20 ticks"))
   "Lists (argument-type dimension examples).")
 

@@ -6,11 +6,14 @@
 ;;; meanwhile, or all of them stop.
 
 (defun price-of (operator span unit)
-  "Return the price SPAN of OPERATOR in ticks. UNIT is :ticks or :seconds. Signals WRONG-ARGUMENT."
+  "Return the price SPAN of OPERATOR in ticks. UNIT is :ticks or :seconds. Signals WRONG-ARGUMENT.
+The price of THINK is exact."
   (let ((span (fluent-value span)))
     (unless (amount-p span)
       (reject-argument operator 'span span "a number from 0 to 1e15"))
-    (span-in-ticks span unit operator)))
+    (if (eq operator 'think)
+        (exact-span-in-ticks span unit operator)
+        (span-in-ticks span unit operator))))
 
 (defun price-lambda (operator span unit form scope)
   (check-unit unit form)
@@ -25,11 +28,18 @@
 (defun takes-time-p (task ticks)
   (and (agent-charged-p (task-agent task)) (plusp ticks)))
 
+(defun whole-ticks-to-think (task span)
+  "Charge TASK for a thought of SPAN ticks. Return how many ticks it takes now."
+  (if (takes-time-p task span)
+      (let ((agent (task-agent task))) (ticks-to-think (agent-client agent) agent span))
+      0))
+
 (define-construct think (span &key unit alone)
   "Think in a plan for SPAN ticks, or seconds if UNIT is :seconds. If thinking is charged, wait for
-SPAN; otherwise return at once. Fractions of ticks are rounded up. Other tasks of the robot's plans
-go on meanwhile. If ALONE is true, all other tasks stop, policies too, and react afterwards. Return
-NIL. Signals WRONG-ARGUMENT (manual 1.2)."
+SPAN; otherwise return at once. Fractions of a tick add up exactly, for each robot: four thoughts of
+1/4 tick cost one tick, in the fourth. Other tasks of the robot's plans go on meanwhile. If ALONE is
+true, all other tasks stop, policies too, and react afterwards. Return NIL. Signals WRONG-ARGUMENT
+(manual 1.2)."
   (:command)
   (:arguments span alone)
   (:parts (span function (price-lambda 'think span unit form scope))
@@ -37,9 +47,9 @@ NIL. Signals WRONG-ARGUMENT (manual 1.2)."
   (:steps
    (begin
     (next thinking)
-    (let ((ticks (funcall span environment)))
+    (let ((ticks (whole-ticks-to-think task (funcall span environment))))
       (setf memory (funcall alone environment))
-      (if (takes-time-p task ticks)
+      (if (plusp ticks)
           (think-for task ticks memory)
           (values (frame-up frame) nil))))
    (thinking (values (frame-up frame) nil)))

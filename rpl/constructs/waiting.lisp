@@ -19,15 +19,20 @@
   "Note that TASK waits for TICKS. The current step of TASK must then return +PARKED+."
   (park task (make-timer-after ticks task #'wake-at-timeout)))
 
-(defun span-in-ticks (span unit operator)
+(defun exact-span-in-ticks (span unit operator)
   "Return SPAN, a number or fluent, in ticks. UNIT is :ticks or :seconds. Errors name OPERATOR."
   (let ((span (fluent-value span)))
     (unless (bounded-number-p span)
       (reject-argument operator 'span span "a number from -1e15 to 1e15"))
     (case unit
       (:ticks span)
-      (:seconds (ceiling (* span (runner-ticks-per-second *runner*))))
+      (:seconds (* span (runner-ticks-per-second *runner*)))
       (t (reject-argument operator 'unit unit ":ticks or :seconds")))))
+
+(defun span-in-ticks (span unit operator)
+  "Return the value of EXACT-SPAN-IN-TICKS, rounded up if UNIT is :seconds."
+  (let ((ticks (exact-span-in-ticks span unit operator)))
+    (if (eq unit :seconds) (ceiling ticks) ticks)))
 
 (defun check-unit (unit form)
   (when (and (atom unit) (or (keywordp unit) (not (symbolp unit)))

@@ -10,6 +10,7 @@ believes in, to estimate how they may end, and to choose the best.")
   (:import-from :ars-magna.time #:*simulation* #:current-simulation #:with-seclusion)
   (:import-from :ars-magna.robot #:robot-name #:robot-p)
   (:import-from :ars-magna.run #:simulation-messages
+                #:find-measure #:measured-number #:parse-measure #:summary-of-numbers #:summary-text
                 #:*simulation-variables* #:simulation-tick #:simulation-seed #:simulation-robots
                 #:simulation-participants #:simulation-journal #:simulation-world
                 #:fork-simulation #:call-in-fork #:release-fork #:*fork-operator*)

@@ -108,7 +108,8 @@ WRONG-ARGUMENT if there is a WORLD, because tasks do not exist in believed world
       (cdr (assoc 'question (task-bindings-cells data)))
       data))
 
-(define-construct project (plan &key arguments trials horizon seed cost world print robot)
+(define-construct project (plan &key arguments trials horizon seed cost measure world print
+                                robot)
   "Return a projection of PLAN: how it ends in TRIALS rollouts, by default 20. A rollout is a fork
 of the run with its own seed. In the fork, PLAN runs until it has ended or HORIZON ticks have
 passed, by default 600. See PROJECTION-PROBABILITY and others.
@@ -119,6 +120,9 @@ and a robot, as for BEGIN-PLAN; in a plan, PLAN then begins as in ON-ROBOT.
 the tick.
   COST, a function without arguments, is called in each fork at its end. COST returns a number, or
 positive infinity for the worst.
+  MEASURE, the name of a measure (see DEFMEASURE), is read in each fork at its end; or, as a list
+(name :over summary), sampled at each tick, with the summary :MEAN, :SUM, :MAX or :MIN. See
+PROJECTION-MEAN-MEASURE.
   WORLD, a function, makes worlds for rollouts that are no forks, such as a world that the robot
 believes in. WORLD is called with a function and a seed, and must call that function inside of
 (with-simulation (robot :seed seed) ...). Rollouts then use the robots, fluents and parameters of
@@ -131,10 +135,10 @@ PLAN must have a name, and ARGUMENTS must contain no objects of a run.
 PROJECT called it. Elsewhere, as in a continuation, in a test or at the prompt, PLAN begins as by
 BEGIN-PLAN. The run itself is not affected: its dice are not rolled, and messages and traces of
 rollouts are dropped. In rollouts, PROJECT returns a
-projection without rollouts. An error in a rollout is a failure of that rollout; errors in COST or
-WORLD are reported by one message. Fails with CANNOT-FORK if the run cannot be forked. (After
-McDermott's projection of reactive plans, 1992.)"
-  (:arguments plan arguments trials horizon seed cost world print robot)
+projection without rollouts. An error in a rollout is a failure of that rollout; errors in COST,
+MEASURE or WORLD are reported by one message. Fails with CANNOT-FORK if the run cannot be forked.
+(After McDermott's projection of reactive plans, 1992.)"
+  (:arguments plan arguments trials horizon seed cost measure world print robot)
   (:parts (request function
                    (progn
                      (check-plan-quote plan form scope)
@@ -143,11 +147,12 @@ McDermott's projection of reactive plans, 1992.)"
                                       "no option :robot in a plan: put it after the arguments of ~
                                        the plan, '(NAME ARGUMENT... :robot ROBOT)"))
                      (value-lambda `(list ,plan ,arguments :trials ,trials :horizon ,horizon
-                                          :seed ,seed :cost ,cost :world ,world :print ,print)
+                                          :seed ,seed :cost ,cost :measure ,measure :world ,world
+                                          :print ,print)
                                    scope))))
   (:in-lisp `(project-plan ,plan :arguments ,arguments :trials ,trials :horizon ,horizon
-                                 :seed ,seed :cost ,cost :world ,world :print ,print
-                                 :robot ,robot))
+                                 :seed ,seed :cost ,cost :measure ,measure :world ,world
+                                 :print ,print :robot ,robot))
   (:steps
    (begin
     (next answered)
@@ -197,14 +202,14 @@ robot that plans drive by default. Signals MISUSE inside a plan's step."
       (call-with-plans (lambda () (forget-wish question)) interface))))
 
 (addition project-plan)
-(defun project-plan (plan &key arguments trials horizon seed cost world print robot)
+(defun project-plan (plan &key arguments trials horizon seed cost measure world print robot)
   "Return a projection of PLAN. This is PROJECT for Lisp code outside of plans. Signals
 UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
   (multiple-value-bind (plan arguments robot) (split-projected-call plan arguments robot)
     (let* ((interface (if world nil (interface-to-project plan robot)))
            (question (make-question nil interface plan arguments robot
                                     (list :trials trials :horizon horizon :seed seed :cost cost
-                                          :world world :print print))))
+                                          :measure measure :world world :print print))))
       (when world (check-no-run-objects question))
       (cond (*rolling-out* (projection-without-rollouts question))
             (t (first (project-branches question
@@ -219,7 +224,8 @@ UNKNOWN-NAME, WRONG-ARGUMENT, CANNOT-FORK; and MISUSE inside of a plan's step."
          (%make-question :operator 'try-best :task task :interface (asking-interface task)
                          :branches (mapcar #'whole-form-text forms) :options options))))
 
-(define-construct try-best ((&key trials horizon until cost seed tell print) &body branches)
+(define-construct try-best ((&key trials horizon until cost measure seed tell print)
+                            &body branches)
   "Run the best of BRANCHES, in a plan, and return its values. Each branch is tried first in TRIALS
 forks of the run, by default 20, until the whole plan has ended or HORIZON ticks have passed, by
 default 600. The best is the branch with which the plan succeeds most often. Of equally good
@@ -228,16 +234,17 @@ Trials of the same number have the same random events in all branches.
   UNTIL :branch ends a rollout when the branch has ended.
   COST, a function without arguments, is called in each fork at its end. COST returns a number, the
 less the better, or positive infinity for the worst. The number replaces ticks in the choice.
+  MEASURE, as in PROJECT, replaces ticks in the choice unless there is a COST: the more the better.
   SEED, an integer, determines the seeds of rollouts. By default they depend on the run's seed and
 the tick.
   TELL, a function, is called with the list of projections and the index of the chosen branch.
   PRINT, if true, shows what plans write in rollouts. In a rollout a branch is chosen at random:
 there are no rollouts in rollouts. The task goes on in the same tick; rollouts have no other effect
 on the run. Fails with CANNOT-FORK if the run cannot be forked."
-  (:arguments trials horizon until cost seed tell print)
+  (:arguments trials horizon until cost measure seed tell print)
   (:parts (request function
                    (value-lambda `(list :trials ,trials :horizon ,horizon :until ,until :cost ,cost
-                                        :seed ,seed :tell ,tell :print ,print)
+                                        :measure ,measure :seed ,seed :tell ,tell :print ,print)
                                  scope))
           (forms list `',branches)
           (branches simple-vector

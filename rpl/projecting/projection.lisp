@@ -13,7 +13,8 @@ QUESTION awaits its answer; rollouts fork it. Without MOMENT, they begin in a be
 
 (addition rollout-p)
 (define-record (rollout (:constructor make-rollout
-                            (scene trial seed state result ticks cost steps ways &optional broken)))
+                            (scene trial seed state result ticks cost steps ways
+                             &optional broken measure)))
   "One trial of a projection."
   (scene nil rollout-start)
   (trial 0 fixnum "the number of the trial")
@@ -28,7 +29,9 @@ without waiting" :addition)
   (steps 0 integer "how many steps of plans count")
   (ways '() list "where robots went")
   (broken nil (or null keyword)
-          "the option, :COST or :WORLD, whose function's error ended the rollout, or NIL"))
+          "the option, :COST, :MEASURE or :WORLD, whose error ended the rollout, or NIL")
+  (measure nil (or null real)
+           "the value of the measure of the option :MEASURE; NIL without :MEASURE" :addition))
 
 (define-shared-types rollout-start rollout)
 
@@ -129,6 +132,17 @@ rollouts of PROJECTION. A reason is a failure's class or condition type, or the 
    (mapcar #'rollout-ticks
            (remove-if-not #'rollout-succeeded-p (projection-rollouts projection)))))
 
+(defun mean-of-measures (rollouts)
+  "Return the exact mean of the known measures of ROLLOUTS, or NIL."
+  (mean-or-infinity (remove nil (mapcar #'rollout-measure rollouts))))
+
+(addition projection-mean-measure)
+(defun projection-mean-measure (projection)
+  "Return the mean, a double-float, of the measure of the option :MEASURE in the rollouts of
+PROJECTION, successful or not; NIL without :MEASURE."
+  (let ((mean (mean-of-measures (projection-rollouts projection))))
+    (and mean (coerce mean 'double-float))))
+
 (defun first-error-text (projection)
   (let ((condition (some #'rollout-error (projection-rollouts projection))))
     (and condition (cut (brief-condition-text condition) 120))))
@@ -155,12 +169,13 @@ rollouts of PROJECTION. A reason is a failure's class or condition type, or the 
 
 (defun mean-cost (projection)
   "Return the mean cost, by the function :COST, of the rollouts of PROJECTION that succeeded. If
-none succeeded, return the mean cost of all rollouts with a known cost. Without costs, return the
-mean ticks of success, or NIL."
+none succeeded, return the mean cost of all rollouts with a known cost. Without costs, do the same
+with the negative of the measure :MEASURE. Without that, return the mean ticks of success, or NIL."
   (let* ((rollouts (projection-rollouts projection))
          (good (remove-if-not #'rollout-succeeded-p rollouts)))
     (cond ((some #'rollout-cost rollouts)
            (mean-or-infinity (remove nil (mapcar #'rollout-cost (or good rollouts)))))
+          ((some #'rollout-measure rollouts) (- (mean-of-measures (or good rollouts))))
           (t (projection-mean-ticks projection)))))
 
 (defun better-projection-p (projection other)

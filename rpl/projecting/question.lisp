@@ -83,6 +83,10 @@ rollout, ENDED and RESULT say how the branch or plan on trial has ended."
       (:seed (check (integerp value) "an integer"))
       (:until (check (member value '(:plan :branch)) ":plan or :branch"))
       ((:cost :tell :world) (check (function-designator-p value) "a function"))
+      (:measure (check (parse-measure value)
+                       (format nil "the name of a measure, or a list (name :over summary), with ~
+                                    the summary ~A" (summary-text)))
+       (find-measure (parse-measure value)))
       (:print))))
 
 (defun checked-options (operator options)
@@ -133,6 +137,9 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
                      (loop for trial from 1 to (question-option question :trials)
                            collect (roll-out scene trial (seed-of-trial question trial))))))
 
+(defun code-of-option (option)
+  (if (eq option :measure) "the measure" (format nil "the function ~S" option)))
+
 (defun report-function-errors (question projections)
   "Report in one message in how many rollouts QUESTION's functions failed, and the first error."
   (let* ((rollouts (mapcan (lambda (projection) (copy-list (projection-rollouts projection)))
@@ -140,8 +147,9 @@ from the run's seed, the tick, and the number of earlier questions in that tick.
          (broken (remove-if-not #'rollout-broken rollouts)))
     (when broken
       (report-user-error (rollout-error (first broken))
-                         (format nil "the function ~S of ~A, in ~D of ~D rollouts; the first error"
-                                 (rollout-broken (first broken)) (question-operator question)
+                         (format nil "~A of ~A, in ~D of ~D rollouts; the first error"
+                                 (code-of-option (rollout-broken (first broken)))
+                                 (question-operator question)
                                  (length broken) (length rollouts))))))
 
 (defun project-branches (question moment)

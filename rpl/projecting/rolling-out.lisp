@@ -27,31 +27,60 @@ or else how the asking plan has. Return NIL if nothing has ended yet."
 
 (defun failed-rollout-values (condition &optional option)
   "Return the values of RUN-QUESTION-TO-END for a rollout that the error CONDITION has ended. OPTION
-is the option whose function signalled CONDITION, or NIL."
-  (values :failed (make-condition 'lisp-failure :condition condition) nil option))
+is the option whose code signalled CONDITION, or NIL."
+  (values :failed (make-condition 'lisp-failure :condition condition) nil option nil))
 
-(defun values-with-cost (question how result)
-  (handler-case (values how result (question-cost question))
-    (error (condition) (failed-rollout-values condition :cost))))
+;;; The measure of a question, read at the end of a rollout or sampled at each tick.
+
+(defun make-meter (question)
+  "Return two functions for QUESTION's option :MEASURE: one to call before the first tick and after
+each tick, and one that then returns the measure's value; or NIL without :MEASURE."
+  (multiple-value-bind (name summary) (parse-measure (question-option question :measure))
+    (let ((numbers '()) (last nil))
+      (values (lambda ()
+                (when (and summary (not (eql last (simulation-tick))))
+                  (setf last (simulation-tick))
+                  (push (measured-number name) numbers)))
+              (lambda ()
+                (cond (summary (summary-of-numbers summary (reverse numbers)))
+                      (name (measured-number name))))))))
+
+(defun values-at-end (question how result measured)
+  "Return the values of RUN-QUESTION-TO-END at the end of a rollout. MEASURED returns the measure."
+  (let ((cost nil))
+    (handler-case (setf cost (question-cost question))
+      (error (condition)
+        (return-from values-at-end (failed-rollout-values condition :cost))))
+    (handler-case (values how result cost nil (funcall measured))
+      (error (condition) (failed-rollout-values condition :measure)))))
 
 (defun run-question-to-end (question interface begin over)
   "Call BEGIN, which starts the plan or branch of QUESTION and returns the task to watch or NIL. Let
 ticks of the current simulation pass until the plan or branch has ended, or the function OVER,
-called with the plan after each tick, returns a state. Return four values: the state, the result,
-the cost, and the option whose function signalled an error, or NIL."
-  (handler-case
-      (let* ((last (+ (simulation-tick) (question-option question :horizon)))
-             (task (funcall begin))
-             (how (pass-until interface
-                              (lambda ()
-                                ;; The plan that asked may not wait for that any more.
-                                (when (and *current-question* (obsolete-wish-p *current-question*))
-                                  (throw 'abandoned nil))
-                                (or (funcall over (or task (task-top (wish-task question))))
-                                    (final-state-of-question task question interface)))
-                              last)))
-        (values-with-cost question how (if task (task-result task) (question-result question))))
-    (error (condition) (failed-rollout-values condition))))
+called with the plan after each tick, returns a state. Return five values: the state, the result,
+the cost, the option whose code signalled an error, or NIL, and the measure."
+  (multiple-value-bind (sample measured) (make-meter question)
+    (flet ((sample ()
+             (handler-case (funcall sample)
+               (error (condition)
+                 (return-from run-question-to-end (failed-rollout-values condition :measure))))))
+      (handler-case
+          (let* ((last (+ (simulation-tick) (question-option question :horizon)))
+                 (task (progn (sample) (funcall begin)))
+                 (how (pass-until interface
+                                  (lambda ()
+                                    ;; The plan that asked may not wait for that any more.
+                                    (when (and *current-question*
+                                               (obsolete-wish-p *current-question*))
+                                      (throw 'abandoned nil))
+                                    (sample)
+                                    (or (funcall over
+                                                  (or task (task-top (wish-task question))))
+                                        (final-state-of-question task question interface)))
+                                  last)))
+            (values-at-end question how (if task (task-result task) (question-result question))
+                           measured))
+        (error (condition) (failed-rollout-values condition))))))
 
 ;;; A plan that never waits would take a million steps in each tick, to no use. If another plan
 ;;; beside it is the one that never waits, the rollout goes on, though slowly.
@@ -78,7 +107,7 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
          (steps (counted-steps runner))
          (runaway (runaway-test runner))
          (trails '()))
-    (multiple-value-bind (how result cost broken)
+    (multiple-value-bind (how result cost broken measure)
         (run-question-to-end question interface begin
                              (lambda (plan)
                                (setf trails (update-trails (current-simulation) trails))
@@ -86,7 +115,7 @@ starts the plan or branch of QUESTION: see RUN-QUESTION-TO-END."
       (make-rollout scene trial seed how result (- (simulation-tick) start) cost
                     (- (counted-steps runner) steps)
                     (trails-to-ways trails trial (outcome-word how))
-                    broken))))
+                    broken measure))))
 
 ;;; Such a world is made by the user's function WORLD. It is called with a function and a seed; it
 ;;; must put things where they are believed to be, and call that function in a WITH-SIMULATION with

@@ -18,7 +18,9 @@
   (:error robot-movement-error*)
   (:pulse robot-stopped*))
 
-(define-outcome (robot-go-forward robot-go-distance robot-goto-wall robot-follow-wall robot-stop) ()
+(define-outcome (robot-go-forward robot-go-distance robot-step robot-goto-wall robot-follow-wall
+                 robot-stop)
+    ()
   (:error robot-movement-error*)
   (:pulse robot-stopped*))
 

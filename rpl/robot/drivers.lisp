@@ -176,6 +176,12 @@ MISUSE without a robot."
 has driven a robot of the run."
   (interface-runner (required-interface)))
 
+;;; Thoughts.
+
+(defmethod ticks-to-think ((driver driver) agent span)
+  (declare (ignore agent))
+  (charge-thought (driver-robot driver) span))
+
 ;;; Fluents.
 
 (defun driver-fluent (variable driver)

@@ -46,7 +46,7 @@
                 #:*default-interface* #:default-home #:note-outside-change #:*runner* #:post-entry
                 #:react-to-all
                 #:exhaust-reaction #:close-runner #:notify-at-rest #:advance-timers #:note-tick
-                #:next-wake-time #:outside-request-p #:runner-idle-p #:set-charges
+                #:next-wake-time #:outside-request-p #:runner-idle-p #:set-charges #:ticks-to-think
                 #:make-plan-runner #:start-plan #:skip-idle-tick #:stop-plan #:plan-runner
                 #:plan-runner-tasks #:runner-steps #:plan-runner-tick
                 #:agent-note #:runner-agent #:fail #:current-task #:task #:task-p

@@ -29,6 +29,8 @@ reaction or, if CHARGED-P, in a tick; NIL for no limit" :writable :export)
   (allotted nil (or null real) :writable)
   (debt 0 (integer 0) :writable)
   (still-until nil (or null real) :writable)
+  (unpaid 0 (rational 0 (1)) "the fraction of a tick that thoughts have yet to be charged; 0 if the
+agent runs plans for a robot, which keeps it" :writable)
   (uncounted 0 (integer 0) :writable)
   (uncovered 0 integer "the number of counted steps minus STEPS" :writable))
 

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(count-steps set-charges resume-agent stop-agent agent-stopped-p))
+(export '(count-steps set-charges resume-agent stop-agent agent-stopped-p ticks-to-think))
 
 ;;; An agent that is CHARGED-P charges what plans state: WITH-CHARGE and THINK wait, CHARGE-TICKS
 ;;; and CHARGE-STEPS count. BUDGET is how many steps its tasks may take in a tick, all together, in
@@ -65,6 +65,15 @@ if CHARGED-P is true. Give it BUDGET steps a tick, or any number of steps if BUD
       (incf (agent-limit agent) steps))))
 
 ;;; Taking steps and ticks.
+
+(defgeneric ticks-to-think (client agent span)
+  (:documentation "A task of AGENT, which runs plans for CLIENT, thinks for SPAN ticks. Return the
+whole ticks that the thought takes. The rest, less than a tick, is kept for the next thought.")
+  (:method (client agent span)
+    (declare (ignore client))
+    (multiple-value-bind (ticks rest) (floor (+ (agent-unpaid agent) (rationalize span)))
+      (setf (agent-unpaid agent) rest)
+      ticks)))
 
 (addition exhaust-reaction)
 (defun exhaust-reaction (&optional (which (calling-agent)))

@@ -147,10 +147,11 @@ string designator."
 
 (defun state-of-agent (agent)
   "Return a list of the state of the dice of AGENT, its debt, and until when it is stopped. Without
-AGENT, return that of a new agent."
+AGENT, return that of a new agent. A fraction of a tick that it has yet to be charged comes last."
   (if agent
-      (list (and (agent-dice agent) (dice-state (agent-dice agent)))
-            (agent-debt agent) (agent-still-until agent))
+      (list* (and (agent-dice agent) (dice-state (agent-dice agent)))
+             (agent-debt agent) (agent-still-until agent)
+             (unless (zerop (agent-unpaid agent)) (list (agent-unpaid agent))))
       (list nil 0 nil)))
 
 (defun digest-runner (runner digest)

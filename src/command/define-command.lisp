@@ -199,7 +199,8 @@ BODY runs in a tick. OPERATION must end with SUCCEED or FAIL-WITH, now or later 
                        ,@(rest report)))
          :guarded-p (not *loading-simulator-p*)
          :body (lambda (,operation ,(first resource) ,@variables)
-                 (declare (ignorable ,operation ,(first resource)))
+                 ;; A later step may be what uses a parameter, by OPERATION-ARGUMENTS.
+                 (declare (ignorable ,operation ,(first resource) ,@variables))
                  ,@body)))
        (defun ,name (,(first resource) ,@variables &optional continuation)
          ,(command-documentation-text sentence resource parameters results errors

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.command)
 
-(export '(operation operation-command operation-resource operation-p end-operation succeed fail-with
+(export '(operation operation-command operation-resource operation-arguments operation-subject
+          operation-p end-operation succeed fail-with
           notify-caller report go-on))
 
 ;;; Issuing a command posts an OPERATION, a request, to the timeline of its robot. At the start of
@@ -46,7 +47,11 @@ the command that it has interrupted, or NIL"))
 (note-savable-function 'interrupt-operation)
 
 (setf (documentation 'operation-resource 'function)
-      "Return the robot or part that the operation occupies.")
+      "Return the robot or part that the operation occupies."
+      (documentation 'operation-arguments 'function)
+      "Return a list of the arguments of the command, without its resource and continuation."
+      (documentation 'operation-subject 'function)
+      "Return the data that the command keeps from tick to tick. Can be set.")
 
 (declaim (inline operation-command operation-agenda))
 (defun operation-command (operation)

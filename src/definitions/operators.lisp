@@ -56,6 +56,8 @@ given, the text also says what is wrong with VALUE."
 (define-argument-type 'speed #'sane-number-p "a speed in metres per tick, from -1e9 to 1e9")
 (define-argument-type 'ticks #'sane-number-p "a number of ticks, from -1e9 to 1e9")
 (define-argument-type 'tick-span #'whole-p "a whole number of ticks, from 0 to 1e9")
+(define-argument-type 'duration (lambda (value) (and (sane-number-p value) (not (minusp value))))
+  "a number of ticks, from 0 to 1e9")
 (define-argument-type 'quantity #'bounded-number-p "a number from -1e15 to 1e15")
 (define-argument-type 'amount #'amount-p "a number not below 0, up to 1e15")
 (define-argument-type 'probability #'probability-p "a probability from 0 to 1")

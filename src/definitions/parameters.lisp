@@ -183,7 +183,13 @@ CLEAN-SIMULATION was not called, do nothing. Return nothing (manual, chapter 4).
      (robot-turn-delay* 2 "ticks" :delay (integer 0 #.+largest+)
       "How long a turn takes to start.")
      (robot-align-delay* 4 "ticks" :delay (integer 0 #.+largest+)
-      "How many more ticks an alignment takes to start than a turn does."))
+      "How many more ticks an alignment takes to start than a turn does.")
+     (step-duration* 15 "ticks" :delay (integer 1 #.+largest+)
+      "How long a step to a neighbouring cell takes. With the initial speed and turn angle, 15 ticks
+are enough for each direction." :addition t)
+     (step-by-grid* nil "" :setting boolean
+      "When true, a step is aimed from the robot's true position and heading, so that the errors of
+steps do not add up. When NIL, it is aimed from the estimate of the main odometer." :addition t))
     ("Cameras"
      (camera-angle-max-error* 0.02d0 "radians" :noise (real 0 #.+largest+)
       "The largest error of a designator's angle and of a camera's report of its turn.")

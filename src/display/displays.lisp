@@ -287,22 +287,23 @@ cameras, hands and storage bins.")
         (draw-rectangle canvas draw-gcontext* 0 0 +robot-display-width+ (+ top height))))
     (+ top height 1)))
 
-(defun draw-all-displays (canvas snapshot robot layers title)
+(defun draw-all-displays (canvas snapshot robot layers title subtitle)
   "Draw the world and, beside it, the other five displays. Return the width and height in pixels."
-  (multiple-value-bind (width height) (draw-framed-world canvas snapshot layers :title title)
+  (multiple-value-bind (width height) (draw-framed-world canvas snapshot layers
+                                                      :title title :subtitle subtitle)
     (let ((left (+ width +margin+)) (bottom 0))
       (dolist (display (rest +displays+))
         (incf bottom (+ (draw-titled-display canvas display robot left bottom) +margin+)))
       (values (+ left +robot-display-width+ 1) (max height bottom)))))
 
 (defun draw-display (canvas display snapshot robot &key (layers *picture-layers*)
-                                                     (width +robot-display-width+) title)
+                                                     (width +robot-display-width+) title subtitle)
   "Draw DISPLAY, one of +DISPLAYS+ or :ALL, on CANVAS. ROBOT is the image of a robot in SNAPSHOT.
-Return the width and height in pixels. WIDTH is the width of the displays except the world. LAYERS
-and TITLE are for the world: see DRAW-FRAMED. Call this within WITH-CANVAS."
+Return the width and height in pixels. WIDTH is the width of the displays except the world. LAYERS,
+TITLE and SUBTITLE are for the world: see DRAW-FRAMED. Call this within WITH-CANVAS."
   (case display
-    (:all (draw-all-displays canvas snapshot robot layers title))
-    (:world (draw-framed-world canvas snapshot layers :title title))
+    (:all (draw-all-displays canvas snapshot robot layers title subtitle))
+    (:world (draw-framed-world canvas snapshot layers :title title :subtitle subtitle))
     (t (values width (draw-robot-display canvas display robot width)))))
 
 (defun check-display (operator display)

@@ -291,13 +291,14 @@ of LEGEND-ENTRIES for the other entries."
       (call-on-map-part draw canvas snapshot))
     (values (arrangement-width arrangement) (arrangement-height arrangement) left)))
 
-(defun draw-framed-world (canvas snapshot layers &key title)
-  "Draw SNAPSHOT with LAYERS, and TITLE as in DRAW-FRAMED. Return the width and height in pixels."
+(defun draw-framed-world (canvas snapshot layers &key title subtitle)
+  "Draw SNAPSHOT with LAYERS, and with TITLE and SUBTITLE as in DRAW-FRAMED. Return the width and
+height in pixels."
   (draw-framed canvas snapshot layers
                (lambda ()
                  (draw-terrain canvas (snapshot-map snapshot) :layers layers)
                  (draw-movers canvas snapshot layers))
-               :title title))
+               :title title :subtitle subtitle))
 
 (defun call-with-map-svg (function stream snapshot &key layers in-color scale)
   (multiple-value-bind (scale zoom) (drawn-scale scale snapshot layers)

@@ -5,10 +5,11 @@
 (export '(check-map-options picture-kind save-svg save-snapshot))
 
 (defun write-picture (stream snapshot robot &key (display :world) (layers *picture-layers*)
-                                              (in-color t) scale title)
+                                              (in-color t) scale title subtitle)
   "Write an SVG document of DISPLAY to STREAM. ROBOT is the image of a robot in SNAPSHOT."
   (flet ((draw (canvas)
-           (draw-display canvas display snapshot robot :layers layers :title title)))
+           (draw-display canvas display snapshot robot
+                         :layers layers :title title :subtitle subtitle)))
     (if (member display '(:world :all))
         (with-map-svg (canvas stream snapshot :layers layers :in-color in-color :scale scale)
           (draw canvas))
@@ -29,15 +30,21 @@
   (check-display operator display)
   (check-map-options operator :title title :layers layers :scale scale))
 
+(defun snapshot-and-measures (operator robot measures)
+  "Return a snapshot of the world of ROBOT, and a text of the values of MEASURES at that tick, or
+NIL. Errors name OPERATOR."
+  (asking (robot) (values (snapshot-of robot) (text-of-measures operator measures))))
+
 (addition svg-picture)
 (define-with-keywords svg-picture
-    (robot &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
+    (robot &key (display :world) (layers *picture-layers*) (in-color t) scale title measures part)
   "Return a picture of the present world of ROBOT: an SVG document, as a string. DISPLAY is one of
 :WORLD, :STATE, :DESIGNATORS, :CAMERAS, :HANDS and :BINS, the displays of the manual, or :ALL.
 LAYERS lists what the picture shows besides walls, things and robots; () means nothing else.
 *PICTURE-LAYERS* documents the layers. If the layer :TITLE is shown, TITLE, a string, replaces the
-default title: robots, map and tick. PART (left top right bottom), in cells, is the part of the map
-to show, by default the whole map. If IN-COLOR is NIL, the picture is black and white.
+default title: robots, map and tick. The present values of MEASURES, a list of names of measures
+(see DEFMEASURE), are written below the title. PART (left top right bottom), in cells, is the part
+of the map to show, by default the whole map. If IN-COLOR is NIL, the picture is black and white.
 
 SCALE is the number of pixels per cell, from 1 to 256. The default is GRAPHICS-SCALE* if you have
 set it to a value other than 8, else the scale that suits the map. That scale is from 4 to 40. With
@@ -46,14 +53,14 @@ it larger. If SCALE is larger than the scale that suits the map, and larger than
 grow too. In a paper, text is readable if the picture is at most 400 pixels wide for a column of 84
 mm, and at most 820 pixels wide for a page of 174 mm.
 
-Signals WRONG-ARGUMENT, and MISUSE if GRAPHICS-SCALE* is not a valid scale."
+Signals WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE if GRAPHICS-SCALE* is not a valid scale."
   (check-picture 'svg-picture robot display layers scale title)
-  (let ((snapshot (snapshot-of robot)))
+  (multiple-value-bind (snapshot subtitle) (snapshot-and-measures 'svg-picture robot measures)
     (with-output-to-string (stream)
       (write-picture stream (snapshot-of-part snapshot part 'svg-picture)
                      (snapshot-robot snapshot (robot-name robot))
                      :display display :layers layers :in-color in-color :scale scale
-                     :title title))))
+                     :title title :subtitle subtitle))))
 
 ;;; Files.
 
@@ -113,17 +120,18 @@ SNAPSHOT. LOOK are options of WRITE-PICTURE."
 
 (addition save-picture)
 (define-with-keywords save-picture
-    (robot file &key (display :world) (layers *picture-layers*) (in-color t) scale title part)
+    (robot file &key (display :world) (layers *picture-layers*) (in-color t) scale title measures
+                  part)
   "Save a picture of ROBOT's present world in FILE, replacing an older file. Return the truename.
 The name ends in .svg, or in .png if the program rsvg-convert is installed. The other arguments are
-those of SVG-PICTURE. Signals WRONG-ARGUMENT, and MISUSE if rsvg-convert is missing."
+those of SVG-PICTURE. Signals WRONG-ARGUMENT, UNKNOWN-NAME, and MISUSE if rsvg-convert is missing."
   (picture-kind 'save-picture file)
   (check-picture 'save-picture robot display layers scale title)
-  (let ((snapshot (snapshot-of robot)))
+  (multiple-value-bind (snapshot subtitle) (snapshot-and-measures 'save-picture robot measures)
     (save-snapshot (snapshot-of-part snapshot part 'save-picture)
                    (snapshot-robot snapshot (robot-name robot)) file
                    :display display :layers layers :in-color in-color :scale scale
-                   :title title)))
+                   :title title :subtitle subtitle)))
 
 ;;;; Ways on a map
 

@@ -13,7 +13,6 @@ resumed, on all processors and on many machines. Names lparallel.")
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history
                 #:open-display #:*display-opener* #:group-by)
-  (:import-from :ars-magna.world #:world-dice-set)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
                 #:custody-questions #:timeline-phase
                 #:seconds-now #:check-rate #:thinking-mode-p #:thinking-modes-text)

@@ -42,7 +42,7 @@
 
 (defun odometer-estimate (odometer)
   "Return the robot's position on the map according to ODOMETER, the middle of its interval: x and y
-in metres, and the heading in radians. Only displays use this position; robots cannot know it."
+in metres, and the heading in radians. For displays and ROBOT-STEP; programs cannot know it."
   (let* ((x (* 0.5d0 (+ (odometer-x-min odometer) (odometer-x-max odometer))))
          (y (* 0.5d0 (+ (odometer-y-min odometer) (odometer-y-max odometer))))
          (axis (odometer-origin-angle odometer))

@@ -43,7 +43,9 @@
     "The resource that THINK occupies, so that body and parts continue while a robot thinks."
   (:memory
    (plan-times 0 (unsigned-byte 60) "how many times a plan of the robot has begun while the robot
-had no other, since the seed of the run was set" :export)))
+had no other, since the seed of the run was set" :export)
+   (unpaid 0 (rational 0 (1)) "the fraction of a tick that the robot has yet to be charged for its
+thinking" :export)))
 
 (define-kind (radio :include inner-resource)
     "The resource that ROBOT-SEND occupies, with the mailbox of the robot; see messages.lisp."

@@ -106,8 +106,10 @@ slots with the roles :STATE and :MEMORY."))
      (loop for (key reader) in *part-vectors*
            append (list key (map 'list #'part-status (funcall reader robot))))
      (list :place (robot-last-place robot)
-           :thinking (simulation-thinking (robot-simulation robot))
-           :live (live-p (robot-simulation robot))
+           :thinking (simulation-thinking (robot-simulation robot)))
+     (let ((unpaid (robot-unpaid-thinking robot)))
+       (and (plusp unpaid) (list :unpaid-thinking unpaid)))
+     (list :live (live-p (robot-simulation robot))
            :under-way (mapcan #'command-in-progress-status resources)
            :interrupted (mapcan #'interrupted-status resources)
            :failed (last-failure robot)
@@ -143,6 +145,7 @@ the current simulation. The properties:
 - :CAMERAS, :HANDS, :BINS and :SENSORS, a property list for each part
 - :PLACE, the place type that the robot sensed last, or NIL
 - :THINKING, the thinking mode; :LIVE, true in a live run
+- :UNPAID-THINKING, only if it is not 0: the value of ROBOT-UNPAID-THINKING
 - :UNDER-WAY, a list of property lists: the commands in progress on the robot and its parts, and who
   issued them
 - :INTERRUPTED, a list of property lists: the commands interrupted last, and which commands

@@ -36,10 +36,11 @@ SIMULATION."
                          (format nil "names of robots of the run, if any: ~{~(~A~)~^, ~}"
                                  (mapcar #'robot-label robots)))))))
 
-(defun replay-for-picture (journal until own)
-  "Replay JOURNAL up to the tick UNTIL. Return four values: a snapshot of the end; for each robot, a
-list of its name and the pieces of its way; the moments found; and the user's moments OWN with their
-positions. Signals WRONG-ARGUMENT if OWN names robots that are not in the run."
+(defun replay-for-picture (journal until own measures)
+  "Replay JOURNAL up to the tick UNTIL. Return five values: a snapshot of the end; for each robot, a
+list of its name and the pieces of its way; the moments found; the user's moments OWN with their
+positions; and a text of the values of MEASURES at the end, or NIL. Signals WRONG-ARGUMENT if OWN
+names robots that are not in the run."
   (let ((trails '()) (placed '()))
     (multiple-value-bind (watch seen) (make-moments-watcher)
       (flet ((look (simulation)
@@ -56,7 +57,8 @@ positions. Signals WRONG-ARGUMENT if OWN names robots that are not in the run."
                          collect (cons (robot-name (trail-robot trail))
                                        (trail-pieces-in-order trail)))
                    (append (funcall seen) (moments-in-remarks journal until))
-                   (reverse placed)))
+                   (reverse placed)
+                   (text-of-measures 'save-run-picture measures)))
          journal :until until :observer #'look :beginning #'look)))))
 
 ;;; Ways.
@@ -194,9 +196,14 @@ and the other MOMENTS. If PART is NIL, return MOMENTS."
   (checked-moments 'save-run-picture moments
                    (checked-end-tick 'save-run-picture journal until)))
 
+(defun subtitle-text (&rest texts)
+  "Return TEXTS that are not NIL as lines of one text, or NIL if there are none."
+  (let ((texts (remove nil texts)))
+    (and texts (format nil "~{~A~^~%~}" texts))))
+
 (addition save-run-picture)
 (define-with-keywords save-run-picture
-    (file &key journal until moments (kinds t) (limit 24) part title
+    (file &key journal until moments (kinds t) (limit 24) part title measures
                (layers (remove :tracks *picture-layers*)) (in-color t) scale anyway)
   "Save a picture of a run in FILE, which is replaced: the world at the end, the ways of its robots,
 and numbers that refer to events listed below the map. Return the file's truename. JOURNAL is a
@@ -215,7 +222,8 @@ least important first: blocked robots and lost tracks, which plans expect; then 
 commands and of parts of plans.
 
 PART (left top right bottom), in cells, is the part of the map to show, by default the whole map.
-TITLE is printed above the picture. If ANYWAY is true, definitions may have changed since the run,
+TITLE is printed above the picture, and below it the values of MEASURES, a list of names of measures
+(see DEFMEASURE), at the end. If ANYWAY is true, definitions may have changed since the run,
 but then the picture may differ from the original run. FILE and the other arguments are those of
 SAVE-PICTURE. Signals WRONG-ARGUMENT, the errors of REPLAY, and MISUSE without the program that PNG
 needs or if there is no journal."
@@ -224,12 +232,14 @@ needs or if there is no journal."
          (own (check-run-picture-arguments journal moments until
                                            :kinds kinds :limit limit :title title
                                                        :layers layers :scale scale)))
-    (multiple-value-bind (snapshot ways seen own)
-        (replaying (anyway) (replay-for-picture journal until own))
+    (multiple-value-bind (snapshot ways seen own values)
+        (replaying (anyway) (replay-for-picture journal until own measures))
       (save-svg (with-broken-graphics-reported
                   (run-picture-svg (snapshot-of-part snapshot part 'save-run-picture) ways
                                     (sort-moments (append (moments-of-kinds kinds seen) own))
                                     :limit limit :title title :layers layers
-                                    :subtitle (and anyway (changed-definitions-sentence journal))
+                                    :subtitle (subtitle-text
+                                               values
+                                               (and anyway (changed-definitions-sentence journal)))
                                     :in-color in-color :scale scale))
                 file kind))))

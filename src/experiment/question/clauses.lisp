@@ -87,8 +87,11 @@ each of its ranges. Equal points count once; ranges of few integers give equal p
     (:run "(:run form...)")
     (:until "(:until form)")
     (:success "(:success form)")
-    (:measure "(:measure (name form)...)")
-    (:each-tick "(:each-tick (name form)...)"))
+    (:measure "(:measure part...). A part is (name form); the name of a measure that DEFMEASURE ~
+               has defined; or (name :over summary) for such a measure, sampled at each tick, with ~
+               the summary :mean, :sum, :max or :min")
+    (:each-tick "(:each-tick part...). A part is (name form), or the name of a measure that ~
+                 DEFMEASURE has defined"))
   "The clauses and their syntax.")
 
 (defun clause-usage (key)
@@ -201,6 +204,29 @@ fails TEST."
   "A list (name form)."
   '(cons (and symbol (not null)) (cons t null)))
 
+;;; Measures, in the clauses :measure and :each-tick.
+
+(defun valid-measure-part-p (key part)
+  "True if PART can be a part of the clause KEY, :measure or :each-tick."
+  (or (typep part 'named-form)
+      (multiple-value-bind (name summary) (parse-measure part)
+        (and name (not (keywordp name)) (or (null summary) (eq :measure key))))))
+
+(defun named-measure-part (part)
+  "Return three values for PART of :measure or :each-tick: the name of its column; a form for the
+value; and, for a measure that is sampled at each tick, the summary. The fourth value is the name
+of the measure, if PART names one that DEFMEASURE has defined."
+  (multiple-value-bind (name summary) (parse-measure part)
+    (if name
+        (values (if summary (symbolicate name '- summary) name)
+                (if summary `(measured-number ',name) `(measure-value ',name))
+                summary
+                name)
+        (values (first part) (second part) nil nil))))
+
+(defun column-of-part (part)
+  (values (named-measure-part part)))
+
 (defun check-case (definition case)
   (unless (and (proper-list-p case) (symbolp (first case)) (first case) (rest case)
                (every (lambda (part) (typep part '(cons t (cons t null)))) (rest case)))
@@ -241,7 +267,7 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
                                     name)))
            (push name taken)))
     (dolist (name (varied-names clauses)) (check name name))
-    (dolist (part (clause-arguments key clauses)) (check (first part) part))))
+    (dolist (part (clause-arguments key clauses)) (check (column-of-part part) part))))
 
 (defun check-column-names (definition clauses)
   (let ((before (append *columns-before-factors*
@@ -291,8 +317,9 @@ those TAKEN, the factors in CLAUSES, and the names in the clause KEY."
     (:thinking (unless (= 2 (length clause)) (reject-by-usage definition clause)))
     ((:until :success) (check-test-clause definition clause))
     ((:measure :each-tick)
-     (check-elements definition clause (lambda (part) (typep part 'named-form)))
-     (dolist (part (rest clause)) (warn-of-quoted-measure definition part)))))
+     (check-elements definition clause (lambda (part) (valid-measure-part-p (first clause) part)))
+     (dolist (part (rest clause))
+       (when (typep part 'named-form) (warn-of-quoted-measure definition part))))))
 
 (defun check-all-clauses (definition name clauses)
   (check-clauses definition clauses)

@@ -30,9 +30,25 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
                      (special ,@(names-in-robots (clause-arguments :robots clauses))))
             ,@forms))))
 
-(defun named-functions-form (key clauses)
-  `(list ,@(loop for (name form) in (clause-arguments key clauses)
-                 collect `(list ',name ,(function-form clauses (list form))))))
+(defun named-functions-form (key definition clauses)
+  "Return a form for a list of lists (name function), or (name function summary) for a measure that
+is sampled at each tick, for the parts of the clause KEY."
+  `(list ,@(loop for part in (clause-arguments key clauses)
+                 collect (multiple-value-bind (name form summary measure) (named-measure-part part)
+                           `(list ',name ,(function-form clauses (list form))
+                                  ,@(and summary (list summary))
+                                  ,@(and measure
+                                         `((check-measure-defined ,definition ',part
+                                                                  ',measure))))))))
+
+(defun check-measure-defined (definition part name)
+  "Signal MALFORMED-DEFINITION about PART unless NAME is the name of a measure. Return NIL."
+  (unless (find-measure name nil)
+    (let ((nearest (nearest-name name (mapcar #'measure-name (all-measures)))))
+      (reject-clause definition part
+                     (format nil "(name form), or the name of a measure that DEFMEASURE has ~
+                                  defined; ~(~A~) is none~@[; did you mean ~(~A~)?~]"
+                             name nearest)))))
 
 (defun flag-clause-p (key clauses)
   (multiple-value-bind (rest given) (clause-arguments key clauses)
@@ -69,8 +85,8 @@ variables that CLAUSES vary. Return NIL if there are no FORMS."
      :run ,(function-form clauses (clause-arguments :run clauses))
      :until ,(function-form clauses (clause-arguments :until clauses))
      :success ,(function-form clauses (clause-arguments :success clauses))
-     :measures ,(named-functions-form :measure clauses)
-     :series ,(named-functions-form :each-tick clauses)
+     :measures ,(named-functions-form :measure (definition-title "defexperiment" name) clauses)
+     :series ,(named-functions-form :each-tick (definition-title "defexperiment" name) clauses)
      :form ',form
      :deciding ',(trial-affecting-clauses clauses)))
 
@@ -106,9 +122,13 @@ question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. Th
   (:success form)            whether the trial succeeded: evaluated at its end, see TRIAL-VALUES.
                              If :run succeeds but FORM is false, the trial fails: only-believed
   (:measure (name form)...)  values at the end of the trial: numbers, T or NIL, symbols, strings,
-                             or :NONE for no value
+                             or :NONE for no value. In place of (name form) also the name of a
+                             measure, see DEFMEASURE; or (name :over summary), with the summary
+                             :MEAN, :SUM, :MAX or :MIN of the measure's values before the first tick
+                             and after each tick, in the column NAME-SUMMARY
   (:each-tick (name form)...)  values before the first tick and after each tick, once plans have
-                             run; kept in series.csv, see TRIAL-SERIES. The forms must only read.
+                             run; kept in series.csv, see TRIAL-SERIES. In place of (name form)
+                             also the name of a measure. The forms must only read.
                              They have their own random numbers; any other change that they make
                              affects the trial
 Without :success and :until the values of :run decide. If :run returns the values of RUN-PLAN or the

@@ -21,8 +21,9 @@
 (defun warn-of-unnamed-measures (key clauses)
   "Warn if a part (name form) of the clause KEY in CLAUSES looks like a call with a robot."
   (loop with robots = (clause-arguments :robots clauses)
-        for (name form) in (clause-arguments key clauses)
-        when (and (fboundp name) (symbolp form) (member form robots))
+        for part in (clause-arguments key clauses)
+        for (name form) = (and (typep part 'named-form) part)
+        when (and name (fboundp name) (symbolp form) (member form robots))
           do (warn-of-style "(~A ~A) is a measure called ~A whose value is the robot ~A. Name ~
                              the measure first: (~(~S~) (NAME (~A ~A)))."
                             name form name form key name form)))

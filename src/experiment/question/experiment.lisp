@@ -93,7 +93,8 @@ name counts. Other parameters have the value without noise if CLEAN is true, els
   (run nil (or null function) "a function of the variables' values, or NIL" :writable)
   (until nil (or null function) "a function of the variables' values, or NIL" :writable)
   (success nil (or null function) "a function of the variables' values, or NIL" :writable)
-  (measures '() list "what is measured at the end of a trial, lists (name function)" :writable)
+  (measures '() list "what is measured at the end of a trial, lists (name function); or (name
+function summary) for the summary of what is measured from tick to tick" :writable)
   (series '() list "what is measured from tick to tick, lists (name function)" :writable)
   (variables '() list :writable)
   (form '() list "the whole form" :writable)

@@ -130,7 +130,8 @@ table cannot have that value."
   "The state of recording the :each-tick values of a trial."
   (experiment nil :type experiment :read-only t)
   (result nil :type result :read-only t)
-  ;; Lists (tick text...), the newest first.
+  ;; Lists (tick texts numbers), the newest first: the texts of the :each-tick values, and the
+  ;; numbers of those measures that are summarized. A number that an error prevented is NIL.
   (samples '() :type list)
   ;; The dice of CL:RANDOM while samples are taken.
   (dice (seeded-random-state 0) :read-only t)
@@ -141,18 +142,6 @@ table cannot have that value."
 
 ;;; One sample.
 
-(defun call-with-temporary-dice (function tick world)
-  "Call FUNCTION with the dice of WORLD reseeded from their states and TICK; then restore them."
-  (let* ((all (world-dice-set world))
-         (states (loop for dice across all collect (dice-state dice))))
-    (loop for dice across all
-          for state in states
-          do (setf (dice-state dice) (dice-state (make-dice (logxor state tick) "each tick"))))
-    (unwind-protect (funcall function)
-      (loop for dice across all
-            for state in states
-            do (setf (dice-state dice) state)))))
-
 (defun call-with-sampling-dice (function sampler tick world)
   "Call FUNCTION without changing the dice of WORLD or of the trial's programs."
   ;; Not the seed alone: the trial's programs have that.
@@ -160,6 +149,10 @@ table cannot have that value."
                        (sampler-dice sampler))
   (with-random-state ((sampler-dice sampler))
     (call-with-temporary-dice function tick world)))
+
+(defun note-sampling-error (sampler what tick text)
+  (unless (sampler-trouble sampler)
+    (setf (sampler-trouble sampler) (format nil "Error in ~A at tick ~D: ~A" what tick text))))
 
 (defun sampled-text (sampler name function tick)
   "Return the text of the value of FUNCTION, named NAME, at TICK; \"\" if FUNCTION signals an error.
@@ -169,22 +162,42 @@ SAMPLER keeps the first error."
          (trouble (error-text-of-call
                    (lambda ()
                      (setf text (text-of-measure "each-tick" name function condition))))))
-    (when (and trouble (null (sampler-trouble sampler)))
-      (setf (sampler-trouble sampler)
-            (format nil "Error in :each-tick ~(~A~) at tick ~D: ~A" name tick trouble)))
+    (when trouble
+      (note-sampling-error sampler (format nil ":each-tick ~(~A~)" name) tick trouble))
     text))
+
+(defun sampled-number (sampler name function tick)
+  "Return the number that FUNCTION, of the measure NAME, returns at TICK; NIL after an error.
+SAMPLER keeps the first error."
+  (let* ((number nil)
+         (condition (result-condition (sampler-result sampler)))
+         (trouble (error-text-of-call
+                   (lambda () (setf number (call-trial-form function condition))))))
+    (when trouble (note-sampling-error sampler (format nil "the measure ~(~A~)" name) tick trouble))
+    number))
+
+(defun summarized-measures (experiment)
+  "Return those measures of EXPERIMENT that are summaries: lists (name function summary)."
+  (remove-if-not #'third (experiment-measures experiment)))
 
 ;; If a form is left by a THROW, the rest of the sample is empty.
 (defun take-sample (sampler simulation)
-  (let* ((functions (experiment-series (sampler-experiment sampler)))
+  (let* ((experiment (sampler-experiment sampler))
+         (functions (experiment-series experiment))
+         (measures (summarized-measures experiment))
          (tick (simulation-tick simulation))
-         (texts (make-list (length functions) :initial-element "")))
-    (push (cons tick texts) (sampler-samples sampler))
+         (texts (make-list (length functions) :initial-element ""))
+         (numbers (make-list (length measures))))
+    (push (list tick texts numbers) (sampler-samples sampler))
     (call-with-sampling-dice (lambda ()
                                (loop for (name function) in functions
                                      for place on texts
                                      do (setf (first place)
-                                              (sampled-text sampler name function tick))))
+                                              (sampled-text sampler name function tick)))
+                               (loop for (name function) in measures
+                                     for place on numbers
+                                     do (setf (first place)
+                                              (sampled-number sampler name function tick))))
                              sampler tick (simulation-world simulation))))
 
 (defun drop-later-samples (sampler tick)
@@ -214,8 +227,9 @@ SAMPLER keeps the first error."
 
 (defun call-recording-series (function experiment result)
   "Call FUNCTION, which runs the trial of RESULT in the current simulation, and record the
-:each-tick values of EXPERIMENT for NOTE-SERIES."
-  (let ((*sampler* (and (experiment-series experiment) (make-sampler experiment result)))
+:each-tick values and summarized measures of EXPERIMENT, for NOTE-SERIES and SUMMARIZED-VALUE."
+  (let ((*sampler* (and (or (experiment-series experiment) (summarized-measures experiment))
+                        (make-sampler experiment result)))
         (simulation (current-simulation)))
     (when *sampler*
       (setf (simulation-gate simulation) (sampling-gate *sampler* (simulation-gate simulation))))
@@ -225,5 +239,16 @@ SAMPLER keeps the first error."
   "Store the recorded series in RESULT. Store the first error of recording if RESULT has none."
   (when *sampler*
     (sample-once *sampler* (current-simulation))
-    (setf (result-series result) (reverse (sampler-samples *sampler*)))
+    (when (experiment-series (sampler-experiment *sampler*))
+      (setf (result-series result)
+            (reverse (loop for (tick texts) in (sampler-samples *sampler*)
+                           collect (cons tick texts)))))
     (when (sampler-trouble *sampler*) (set-first-error result (sampler-trouble *sampler*)))))
+
+(defun summarized-value (name summary)
+  "Return the SUMMARY of the samples of the measure NAME in the trial under way; :NONE if an error
+prevented one of the samples."
+  (let* ((place (position name (summarized-measures (sampler-experiment *sampler*)) :key #'first))
+         (numbers (loop for (nil nil numbers) in (reverse (sampler-samples *sampler*))
+                        collect (nth place numbers))))
+    (if (member nil numbers) :none (summary-of-numbers summary numbers))))

@@ -177,14 +177,25 @@ first value of :run. A failure counts as true, so :run may have taken the failur
       (note-series result)
       (take-measures experiment result))))
 
+(defun value-function (name function summary)
+  "Return a function of a trial's variables that returns the value of the measure NAME: FUNCTION, or
+the SUMMARY of its samples."
+  (if summary
+      (lambda (&rest variables)
+        (declare (ignore variables))
+        (summarized-value name summary))
+      function))
+
 (defun take-measures (experiment result)
   (setf (result-measures result)
         (loop with condition = (result-condition result)
-              for (name function) in (experiment-measures experiment)
+              for (name function summary) in (experiment-measures experiment)
               for text = ""
               for trouble = (error-text-of-call
                              (lambda ()
-                               (setf text (text-of-measure "measure" name function condition))))
+                               (setf text (text-of-measure
+                                           "measure" name
+                                           (value-function name function summary) condition))))
               when trouble
                 do (set-first-error result
                                     (format nil "Error in the measure ~(~A~): ~A" name trouble))
