@@ -85,7 +85,8 @@ of each number, or NIL for an external object."
                   (kind-slot-reader field) (kind-slot-writer field)))
 
 (defparameter *newer-slots*
-  '((ars-magna.robot:robot "RADIO")
+  '((ars-magna.robot:mind "UNPAID")
+    (ars-magna.robot:robot "RADIO")
     (ars-magna.world:world "GHOSTS-P" "DICE-NAMES" "ROSTER")
     (ars-magna.world:stock "BODIES")
     (ars-magna.robot:robot "BODY" "DICE-BASE" "KEY" "START"))
