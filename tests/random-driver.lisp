@@ -162,10 +162,10 @@ another command, and sometimes fails."
     (:place-type (pick '(doorway convex concave beak "concave" nonsense)))
     (:receiving-part (pick '(:hand :bin)))
     ((:recipient :message) (pick '(:all keeper "helper" nobody (1 (2 at)) #(a #\b))))
-    ((:number :speed :distance :duration) (pick '(0 1 .3 .8 -1 5)))
+    ((:number :speed :distance) (pick '(0 1 .3 .8 -1 5)))
     (:angle (pick '(0 1 -2 .1 3.2d0 1/2)))
     (:direction (pick '(:north east "South-West" :north-west nowhere)))
-    ((:ticks :tick-span :part-number) (pick '(0 1 2 5 20)))))
+    ((:ticks :tick-span :duration :part-number) (pick '(0 1 2 5 20)))))
 
 (defun senseless-argument ()
   (pick (list nil t 7 "seven" 'seven :seven -1d6 1d30 (expt 10 400)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.robot)
 
 (export '(all-blueprints blueprint *robots* find-blueprint robot-resources
-          inner-resource-p inner-resource-robot inner-resources radio-p
+          inner-resource-p inner-resource-robot inner-resources radio-p mind
           *part-vectors* parts-of-kind part mark-world-unsettled ensure-timeline))
 
 ;;; A blueprint does not change after DEFROBOT has registered it. Any number of robots can be made

@@ -85,7 +85,9 @@ of each number, or NIL for an external object."
                   (kind-slot-reader field) (kind-slot-writer field)))
 
 (defparameter *newer-slots*
-  '((ars-magna.world:world "RUN-VARIABLES")
+  '((ars-magna.robot:mind "UNPAID")
+    (ars-magna.world:world "RUN-VARIABLES")
+    (ars-magna.robot:mind "PLAN-TIMES")
     (ars-magna.robot:robot "RADIO")
     (ars-magna.world:world "GHOSTS-P" "DICE-NAMES" "ROSTER")
     (ars-magna.world:stock "BODIES")
