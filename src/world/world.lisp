@@ -38,11 +38,6 @@ in" :part)
    (kicker-groups '() list "the groups of kickers with the same probability" :part)
    (kicker-tick 0 tick-count "the number of ticks in which kickers have run")
    (due-kickers '() list "the kickers to run in the next tick by request" :part))
-  ;; State as well, but only variables that were set are digested, by a method in the layer of runs.
-  (:memory
-   (run-variables '() t
-                  "the run variables of the world's run, lists (name value use), the newest first"
-                  :export))
   (:scratch
    (noted-names '() list "the keys of the warnings given so far; see FIRST-WARNING-FOR-KEY-P"
                 :export)
@@ -51,7 +46,12 @@ in" :part)
   (:link
    (settled-p nil boolean "a tick has nothing to settle in the world: no robot has a designator, an
 ended track, a part inside of something, a hand with two things in it or with a watched
-grip" :export)))
+grip" :export))
+  ;; State as well, but only variables that were set are digested, by a method in the layer of runs.
+  (:memory
+   (run-variables '() t
+                  "the run variables of the world's run, lists (name value use), the newest first"
+                  :export)))
 
 (defmethod print-object ((world world) stream)
   (print-unreadable-object (world stream :identity t)
