@@ -96,11 +96,9 @@ was answered or was wrong; CALLS digests all calls. Once over, answers lead on t
           ((consp result) (keep-designators result)))))
 
 (defun last-answer-p (name code answers)
-  "True if CODE ends the command NAME, which has had ANSWERS answers before. A track tells that it
-has begun, and a matching track tells of its looks, too."
-  (not (and (null code)
-            (or (eq name 'command:camera-track-matching)
-                (and (eq name 'command:camera-track) (zerop answers))))))
+  "True if CODE ends the command NAME after ANSWERS answers. Tracks tell of starts and looks, too."
+  (let ((track-p (member name '(command:camera-track command:camera-track-matching))))
+    (not (and track-p (null code) (or (null (rest track-p)) (zerop answers))))))
 
 (defun note-answer (call name results)
   "Note that CALL, of the command NAME, was answered with RESULTS."
