@@ -272,19 +272,11 @@ in order. SOURCE is a definition's file, :OWN for the simulator's, or NIL for ty
 (addition undefine)
 (defun undefine (kind name)
   "Remove the definition of NAME as KIND: MAP, MAP-CLAUSE, PLACE-TYPE, ATTRIBUTE, SUBSTANCE, KICKER,
-<<<<<<< HEAD
 MANIPULATION, ROBOT, RUN-VARIABLE, MEASURE, PLAN, POLICY or GOAL, a symbol of any package. The
 variable of the definition becomes unbound. Existing worlds do not change, except that a robot
 leaves the resident world of its map. Return NAME. Signals UNKNOWN-NAME; MISUSE for some definitions
 of the simulator, and if NAME could mean several definitions; WRONG-ARGUMENT unless KIND and NAME
 are symbols or strings."
-=======
-MANIPULATION, ROBOT, MEASURE, PLAN, POLICY or GOAL, a symbol of any package. The variable of the
-definition becomes unbound. Existing worlds do not change, except that a robot leaves the resident
-world of its map. Return NAME. Signals UNKNOWN-NAME; MISUSE for some definitions of the simulator,
-and if NAME could mean several definitions; WRONG-ARGUMENT unless KIND and NAME are symbols or
-strings."
->>>>>>> v2
   (check-argument undefine kind (typep kind '(or symbol string)) "a kind of definition, as MAP")
   (check-argument undefine name (typep name '(or symbol string)) "the name of a definition")
   (let ((registry (find-registry kind)))
