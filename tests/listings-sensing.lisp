@@ -224,9 +224,9 @@ also widens the range that has none of its own."
     outcomes))
 
 (test lock.locks-nine-times-in-ten
-  "With the key in the hand, although a shipped LOCK that wants lids closed fits these things too."
+  "With the key in the hand, although shipped LOCKs, of lids and of doors, fit these things too."
   (with-lock (:seed 25)
-    (is (= 2 (length (command::manipulation-methods (command:find-manipulation 'lock)))))
+    (is (= 3 (length (command::manipulation-methods (command:find-manipulation 'lock)))))
     (world:move-thing (thing 'key) (hand 0))
     (dolist (way (ways-to-lock))
       (world:set-attribute (thing 'box) :locked nil)

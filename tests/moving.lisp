@@ -283,9 +283,10 @@ exactly once."
   (with-rover ()
     (let ((calls '())
           (arguments (loop for spec in (command:command-parameters command)
-                           collect (if (base:same-name-p 'camera (command:spec-type spec))
-                                       (robot:robot-camera rover 0)
-                                       2))))
+                           collect (case (intern (string (command:spec-type spec)) :keyword)
+                                     (:camera (robot:robot-camera rover 0))
+                                     (:direction :east)
+                                     (t 2)))))
       (apply (command:command-name command) rover
              (append arguments (list (lambda (&rest results) (push results calls)))))
       (apply (first then) rover (rest then))

@@ -168,13 +168,17 @@ the error."
       (let ((fluents (fluents-awaited (list task))))
         (and fluents (every #'robot-fluent-p fluents)))))
 
+(defun waits-for-rollout-p (task)
+  "True if TASK waits for the end of the rollout that it runs in, which a text names."
+  (let ((awaited (task-awaiting task)))
+    (and (stringp awaited) (not (eq awaited +no-fluent+)))))
+
 (defun stranded-parts (interface task)
   "Return the parts of TASK, a plan of INTERFACE, that wait in vain; NIL if TASK may go on."
   (let ((parts (waiting-parts task)))
     (and (notany #'waits-on-purpose-p parts)
          (notany #'waits-for-message-p parts)
-         ;; The end of a rollout, for one.
-         (notany #'stringp (mapcar #'task-awaiting parts))
+         (notany #'waits-for-rollout-p parts)
          (or (every #'waits-for-robot-only-p parts)
              (not (others-may-set-fluents-p interface)))
          parts)))
