@@ -166,6 +166,5 @@
 
 (test completing.knows-the-words-of-maps
   (completes ("map " "map belief" "map cones" "map designators" "map legend" "map plan"
-                     "map planned-way" "map range" "map ranges" "map trail" "map way"
-                     "map wedges")
+                     "map planned-way" "map ranges" "map trail" "map way" "map wedges")
              ("map 5 co" "map 5 cones") ("watch 5 way b" "watch 5 way belief")))

@@ -212,7 +212,7 @@
       (ranges-read)
       (is-true (mentions-p (picture) ">measured<"))
       (is (not (mentions-p (display:svg-picture bat-one :layers '(:legend)) ">measured<")))
-      (is-true (has-words-p (display:text-map bat-one :layers '(:range))
+      (is-true (has-words-p (display:text-map bat-one :layers '(:ranges))
                             "~ measured by BAT-ONE")))))
 
 (test ranges.are-read-at-the-prompt

@@ -18,12 +18,13 @@
 (def-interp-macro (insistently (?error ?command) . ?clauses)
   "Repeat COMMAND, a form that returns an error code or NIL, until it returns NIL or CLAUSES accept
 the code. CLAUSES are as in CASE, with ERROR bound to the code; a true value accepts the code. Fails
-with :WILL-NOT-DO after twelve attempts."
-  `(let ((left 12) (done nil))
+with :WILL-NOT-DO and the last code as :ERROR after twelve attempts."
+  `(let ((left 12) (done nil) (code nil))
      (loop UNTIL done
-       (if (zerop left) (fail :class :will-not-do :command ',command))
+       (if (zerop left) (fail :class :will-not-do :error code :command ',command))
        (decf left)
        (let ((,error ,command))
+         (setf code ,error)
          (setf done (case ,error ((nil) t) ,@clauses))))))
 
 ;;; Bins.

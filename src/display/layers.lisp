@@ -107,7 +107,7 @@ is the live view of a window, in which names hold still, or NIL."
   "The distances that each rangefinder has measured last, from where the robot was then."
   :note 'range-scans-of-robot :draw 'draw-ranges
   :ink #x0A5050 :dashes '(2 4) :legend "measured"
-  :text-name :range :text 'range-marks)
+  :text-name :ranges :text 'range-marks)
 
 (define-layer :tracks "Tracks"
   "The believed position of each object that a camera tracks."

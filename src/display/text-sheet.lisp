@@ -46,11 +46,18 @@
 
 ;;; Ranges.
 
+(defconstant +into-obstacle+ 1d-5
+  "How far beyond the end of a beam its mark is, in metres, so that it is in the obstacle's cell.")
+
 (defun range-marks (view robot)
   (let ((glyph (make-glyph :layer #\~ (format nil "measured by ~A" (robot-image-label robot))
                            :green)))
-    (loop for (nil nil . ends) in (getf (robot-image-notes robot) :ranges)
-          append (loop for (x y) on ends by #'cddr append (glyph-mark-at view x y glyph)))))
+    (loop for (from-x from-y . ends) in (getf (robot-image-notes robot) :ranges)
+          append (loop for (x y) on ends by #'cddr
+                       for angle = (atan2 (- y from-y) (- x from-x))
+                       append (destructuring-bind (x y)
+                                  (point-at-distance x y angle +into-obstacle+)
+                                (glyph-mark-at view x y glyph))))))
 
 ;;; Ways.
 

@@ -59,9 +59,11 @@
             (function "a symbol can name a function")
             (t (plain-data-limits-text)))))
 
-(defun check-run-variable-value (name value world)
+(defun check-run-variable-value (operator name value world)
+  "Signal WRONG-ARGUMENT, about OPERATOR, unless the run variable NAME can have VALUE in WORLD."
   (unless (run-variable-value-p value world)
-    (reject-argument 'setf name value (values-expected-text value))))
+    ;; The run keeps errors of kickers, and would keep a long list in each.
+    (reject-argument operator name (abridged value) (values-expected-text value))))
 
 (defun copied-value (value)
   "Return VALUE, or a copy of it if it is a list, vector or string, which users may modify."
@@ -89,7 +91,7 @@
                   (with-seclusion
                     (with-random-state ((dice-for-initial-value name world))
                       (funcall (variable-definition-function definition)))))))
-    (check-run-variable-value name value world)
+    (check-run-variable-value 'define-run-variable name value world)
     (copied-value value)))
 
 (declaim (inline find-variable-entry))
@@ -144,7 +146,7 @@ error in an init form is signalled when the variable is first used, since many r
   "Set the run variable NAME to VALUE in the current run. Return VALUE."
   (let ((world (world-of-current-run name)))
     (definition-of-variable name)
-    (check-run-variable-value name value world)
+    (check-run-variable-value 'setf name value world)
     (let ((kept (copied-value value)))
       (changing (world set-run-variable name kept)
         (store-run-variable name kept world)))

@@ -157,12 +157,19 @@ fails TEST."
            (null (variable-kind name))
            (and (special-p name) (not (package-locked-p (symbol-package name)))))))
 
+(defun reason-not-to-vary (name)
+  "Return a text about NAME, which cannot be varied."
+  (cond ((not (and name (symbolp name))) "no name")
+        ((eq :symbol-macro (variable-kind name))
+         "a run variable or other symbol macro: vary another name, and set it to that in :run")
+        (t "Lisp's or the simulator's")))
+
 (defun check-factor-name (definition part)
   (unless (or (keyword-factor-p (first part)) (can-vary-p (first part)))
     (reject-clause definition part
                    (format nil "something to vary: a parameter, :robots, :thinking, or your own ~
-                                variable; ~(~A~) is ~:[no name~;Lisp's or the simulator's~]"
-                           (safe-text (first part)) (and (first part) (symbolp (first part)))))))
+                                variable; ~(~A~) is ~A"
+                           (safe-text (first part)) (reason-not-to-vary (first part))))))
 
 (defun check-factor (definition part)
   (unless (and (proper-list-p part) (rest part))
