@@ -97,6 +97,19 @@
 (defun getf-measure (replay name)
   (second (assoc name (getf replay :measures) :test #'string-equal)))
 
+(experiment:defexperiment hopeless-trip
+  (:robots picker)
+  (:run t)
+  (:measure (left (error "no left")) (right (error "no right"))))
+
+(test experiment.tells-of-all-measures-that-fail
+  (let ((text (with-output-to-string (*standard-output*)
+                (experiment:print-results
+                 (experiment:run-experiment 'hopeless-trip :trials 1 :stream nil)))))
+    (is-true (has-words-p text "Error in the measure left: no left"
+                          "Error in the measure right: no right")
+             "~A" text)))
+
 (test experiment.samples-do-not-affect-the-trial
   (experiment:defexperiment orchard-trip-unmeasured
     (:robots picker) (:run (go-east 4) t) (:measure progress))

@@ -378,3 +378,19 @@
                   (with-output-to-string (out) (describe time:*simulation* out))))))
   (is (find "*catch*:           5"
             (type-to 'otter "(setf ars-magna.tests::*catch* 5)" "status") :test #'string=)))
+
+(test prompt.finds-run-variables-and-measures
+  (let ((text (joined (type-batch "apropos haul" "help *catch*" "help weight-of-catch"))))
+    (is-true (has-words-p text "*HAUL*" "run variable" "How much was"
+                          "MEASURE weight-of-catch shows its value." "What the catch weighs.")
+             "~A" text)))
+
+(run:defmeasure weight-of-catch "What the catch weighs." *catch*)
+
+(test define-run-variable.of-a-name-of-the-simulator-says-so
+  (flet ((text (name)
+           (princ-to-string
+            (nth-value 1 (ignore-errors
+                          (macroexpand-1 `(run:define-run-variable ,name 1)))))))
+    (is-false (has-words-p (text 'base:motion-noise*) "DEFVAR") "~A" (text 'base:motion-noise*))
+    (is-true (has-words-p (text 'base:motion-noise*) "a name that is free"))))

@@ -63,6 +63,15 @@
 (defun experiment-description (experiment)
   (or (experiment-documentation experiment) "Not documented."))
 
+(defun measure-description (measure)
+  (format nil "MEASURE ~(~A~) shows its value.~@[ ~A~]" (measure-name measure)
+          (documentation (measure-name measure) 'measure)))
+
+(defun run-variable-description (definition)
+  (let ((name (variable-definition-name definition)))
+    (format nil "Each run has its own value, which STATUS shows once it is used.~@[ ~A~]"
+            (documentation name 'variable))))
+
 (defun error-codes-with-commands ()
   (let ((table '()))
     (dolist (command (all-commands) (nreverse table))
@@ -183,6 +192,8 @@
     ("map" all-maps map-name map-description)
     ("robot" all-blueprints blueprint-name robot-description)
     ("experiment" all-experiments experiment-name experiment-description)
+    ("measure" all-measures measure-name measure-description)
+    ("run variable" all-run-variables variable-definition-name run-variable-description)
     ("error code" error-codes-with-commands error-code-topic-name error-code-description)
     ("error code" common-error-codes identity common-error-code-description)
     ("restart" restart-name-list identity restart-description)

@@ -188,12 +188,12 @@ line commands, return the one whose name is the beginning of all the others. Sig
 (defun warn-of-new-variable (name)
   "Warn that typed Lisp has set the undefined variable NAME, if NAME is similar to a defined
 variable or ends in an asterisk."
-  (let ((meant (similar-variable name)))
-    (when (or meant (let ((place (position #\* (symbol-name name) :from-end t)))
+  (let ((meant (similar-variable name)) (elsewhere (variable-elsewhere-text name)))
+    (when (or meant elsewhere (let ((place (position #\* (symbol-name name) :from-end t)))
                       (and place (plusp place) (= place (1- (length (symbol-name name)))))))
       (warning-set (format nil "~(~A~) is a new variable; it was not defined before.~@[ Did you ~
-                                mean ~A?~] (defvar ~:*~:*~(~A~) ...) defines it."
-                           name meant)))))
+                                mean ~A?~] ~:[(defvar ~(~A~) ...) defines it.~;~:*~A~]"
+                           name meant elsewhere name)))))
 
 ;;; A second command in a line.
 

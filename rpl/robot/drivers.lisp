@@ -263,8 +263,8 @@ if there are any: that may let plans of other robots go on."
       (atomic-push (driver-ender driver) (robot-enders (driver-robot driver)))))
 
 ;;; A saved run has no plans, and no dice of plans. So a robot's plans get new dice whenever one of
-;;; them begins while the robot has no other. The dice depend on how often that has happened. Only
-;;; the holder of the plans changes this number.
+;;; them begins while the robot has no other. The dice depend on how often that has happened. The
+;;; holder of the plans counts; the owner of the run sets the count to 0 in SET-SEED.
 
 (defun seed-of-plans (driver)
   "Return the seed of the run of DRIVER, changed if the plans of its robot have had dice before."
@@ -280,7 +280,9 @@ robots."
       :plans))
 
 (defun note-plans-dice-used (driver)
-  (incf (mind-plan-times (robot-mind (driver-robot driver)))))
+  (let ((mind (robot-mind (driver-robot driver))))
+    (loop for times = (mind-plan-times mind)
+          until (swap-if-eq (mind-plan-times mind) times (1+ times)))))
 
 (defun renew-plans-dice (driver)
   "A plan of DRIVER begins. If there is no other, give the plans of DRIVER new dice."

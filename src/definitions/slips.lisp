@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.definitions)
 
-(export '(note-error-code similar-variable note-dispatch-character value-to-pass-text
-          function-of-command public-function-named doubtful-test-text map-calls map-comparisons
-          compared-words test-forms value-forms-in wrong-error-code-text))
+(export '(note-error-code similar-variable variable-elsewhere-text note-dispatch-character
+          value-to-pass-text function-of-command public-function-named doubtful-test-text
+          map-calls map-comparisons compared-words test-forms value-forms-in wrong-error-code-text))
 
 (defun public-function-named (name)
   "Return two values if ARS or NISP exports a function named NAME, a string or symbol: the symbol of
@@ -88,6 +88,12 @@ of the function that it calls; else NIL. The layer that defines commands has a m
                              (find (char (registry-usual-name registry) 0) "aeiou")
                              (registry-usual-name registry) (unqualified-text name)))))
 
+(defun variable-elsewhere-text (name)
+  "Return a sentence on a variable with the name of the symbol NAME in another package of users, or
+NIL."
+  (other-package-text name (lambda (symbol)
+                             (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol))))))
+
 (defun similar-variable (name)
   "Return the name, in lower case, of a variable that the unbound symbol NAME may misspell; or NIL."
   (let ((meant (and (symbol-package name)
@@ -109,8 +115,7 @@ of the function that it calls; else NIL. The layer that defines commands has a m
   (when (and (symbolp name) (symbol-package name))
     (let ((code (find name *error-codes* :test #'string=)))
       (or (and code (format nil "Did you mean ~(~S~)?" code))
-          (other-package-text name (lambda (symbol)
-                                     (or (boundp symbol) (nth-value 1 (macroexpand-1 symbol)))))
+          (variable-elsewhere-text name)
           (definition-name-hint name)
           (let ((like (similar-variable name)))
             (and like (format nil "Did you mean ~A?" like)))))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.run)
 
-(export '(initialize-run-variables run-variables-used shown-run-variables))
+(export '(initialize-run-variables run-variables-used shown-run-variables all-run-variables))
 
 ;;; A run variable is a symbol macro, not a special variable: any thread reads the value of its
 ;;; current run. The values are a slot of the run's world, so forks, rewinds and saved runs have
@@ -16,7 +16,7 @@
 
 (define-record (variable-definition (:constructor make-variable-definition (name function)))
   "The definition of a run variable."
-  (name nil symbol "the name of the run variable")
+  (name nil symbol "the name of the run variable" :export)
   (function nil function "the function that returns the initial value"))
 
 (define-registry run-variable "run variable" :object-p variable-definition-p :by-symbol t
@@ -169,16 +169,16 @@ error in an init form is signalled when the variable is first used, since many r
     (cond ((or (not (symbolp name)) (null name) (keywordp name) (null (symbol-package name)))
            (reject-clause title name "a symbol as the name of a run variable"))
           ((run-variable-name-p name))
+          ((not (variable-name-p name))
+           (reject-clause title name
+                          (format nil "a name that is free; ~A ~A" name
+                                  (variable-name-trouble name))))
           ((eq :special (variable-kind name))
            (reject-clause title name
                           (format nil "a name that is no variable yet. ~(~A~) is a special ~
                                        variable, as DEFVAR makes: remove the DEFVAR, then restart ~
                                        Lisp or evaluate (unintern '~:*~(~A~)), and load your files"
-                                  name)))
-          ((not (variable-name-p name))
-           (reject-clause title name
-                          (format nil "a name that is free; ~A ~A" name
-                                  (variable-name-trouble name)))))))
+                                  name))))))
 
 (defun install-run-variable (name function documentation)
   "Define the run variable NAME, whose init form is the body of FUNCTION. Return NAME."

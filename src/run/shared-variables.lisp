@@ -21,6 +21,12 @@
             (setf (simulation-shared-warnings simulation)
                   (make-warning-record (simulation-messages simulation))))))
 
+(defun note-name (name record)
+  "Add NAME to the names in RECORD, which threads share. Return false if it is there already."
+  (loop for names = (warning-record-names record)
+        when (member name names :test #'eq) return nil
+        when (swap-if-eq (warning-record-names record) names (cons name names)) return t))
+
 (defun warn-of-shared-variable (name)
   "Warn once, in the original run, if this code runs in a fork: it has set the special variable
 NAME. While REWIND repeats a run there is no warning, since the variable may be meant for it."
@@ -29,8 +35,7 @@ NAME. While REWIND repeats a run there is no warning, since the variable may be 
                (fork-p simulation)
                (not (eq *repeated-timeline* (simulation-timeline simulation))))
       (let ((record (simulation-shared-warnings simulation)))
-        (when (and record (not (member name (warning-record-names record) :test #'eq)))
-          (push name (warning-record-names record))
+        (when (and record (note-name name record))
           (let ((*message-queue* (warning-record-queue record)))
             (queue-notable-warning
              (format nil "A plan or continuation in a fork of this run has set ~(~A~), a variable ~

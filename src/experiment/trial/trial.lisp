@@ -187,8 +187,10 @@ the SUMMARY of its samples."
       function))
 
 (defun take-measures (experiment result)
+  "Set the measures of RESULT. If some fail, the error of RESULT tells of all of them."
   (setf (result-measures result)
         (loop with condition = (result-condition result)
+              with troubles = '()
               for (name function summary) in (experiment-measures experiment)
               for text = ""
               for trouble = (error-text-of-call
@@ -197,9 +199,10 @@ the SUMMARY of its samples."
                                            "measure" name
                                            (value-function name function summary) condition))))
               when trouble
-                do (set-first-error result
-                                    (format nil "Error in the measure ~(~A~): ~A" name trouble))
-              collect text)))
+                do (push (format nil "Error in the measure ~(~A~): ~A" name trouble) troubles)
+              collect text
+              finally (when troubles
+                        (set-first-error result (format nil "~{~A~^; ~}" (reverse troubles)))))))
 
 (defun call-noting-errors (function result)
   (let ((trouble (error-text-of-call function)))
