@@ -126,7 +126,8 @@
          (handler-case (use-package :ars package)
            (package-error (condition)
              (let ((text (base:text-of-condition condition)))
-               (is-true (or (has-words-p text "MAP would mean ARS-MAGNA.WORLD:MAP and COMMON-LISP:MAP"
+               (is-true (or (has-words-p text "MAP would mean ARS-MAGNA.WORLD:MAP and"
+                                         "COMMON-LISP:MAP"
                                          "(:shadowing-import-from :ars #:map)"
                                          "(ars:define-user-package :mine)")
                             (has-words-p text "EQUAL would mean ARS-MAGNA.GEOMETRY:EQUAL and"
