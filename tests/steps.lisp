@@ -127,6 +127,39 @@
     (run:run-ticks 20)
     (is (= 5.5 (robot:robot-x paver)) "a robot that turned does not coast")))
 
+;;; A blocked robot stops before the obstacle, and in no cell that it has not reached: a clean
+;;; odometer agrees with the truth also after a line through a corner of cells.
+
+(world:defmap pillared (12 12) (rect (0 0) (11 11) bricks 10)
+  (wall (6 4) (6 6) bricks 10) (wall (3 8) (5 8) bricks 10)
+  (wall (8 8) (8 8) bricks 10) (wall (9 3) (9 3) bricks 10))
+(robot:defrobot pillar-walker (pillared (5.5 5.5) 0))
+
+(defun step-of-a-walk (move)
+  "Let PILLAR-WALKER make MOVE. Return the code, whether it reached the cell, and its error."
+  (destructuring-bind (direction columns rows) move
+    (let* ((robot pillar-walker)
+           (column (+ columns (floor (robot:robot-x robot))))
+           (row (+ rows (floor (robot:robot-y robot))))
+           (code (step-code robot direction)))
+      (multiple-value-bind (x y) (robot:odometer-estimate (robot:robot-main-odometer robot))
+        (is (within-p x (robot:robot-x robot)) "~A to ~A,~A" direction column row)
+        (is (within-p y (robot:robot-y robot)) "~A to ~A,~A" direction column row))
+      (is (eq (null code) (and (= column (floor (robot:robot-x robot)))
+                               (= row (floor (robot:robot-y robot)))))))))
+
+(test step.keeps-a-clean-odometer-true-at-corners
+  (let ((random (sb-ext:seed-random-state 7)))
+    (run:with-simulation (pillar-walker :clean t)
+      (loop repeat 200 do (step-of-a-walk (elt *step-moves* (random 8 random)))))))
+
+(test step.stops-short-of-a-corner
+  (run:with-simulation (pillar-walker :clean t)
+    (robot:place-robot pillar-walker 4.5 7.5 0)
+    (is (eq :robot-blocked (step-code pillar-walker :south-east)))
+    (is (= 4 (floor (robot:robot-x pillar-walker))))
+    (is (= 7 (floor (robot:robot-y pillar-walker))))))
+
 ;;; Fractions of ticks.
 
 (robot:defrobot ponderer (paved (2.5 2.5) 0))

@@ -128,11 +128,14 @@ moves towards or along it. CELL is the robot's column or row; LEFT metres are to
         ((= cell (round position)) (minusp direction))
         (t (plusp direction))))
 
-(declaim (inline move-within-cell move-through-cells))
-(defun move-within-cell (robot dx dy moved cell-x cell-y)
-  (declare (type robot robot) (type double-float dx dy moved))
-  (setf (robot-x robot) (clip-to-cell (+ (robot-x robot) (* dx moved)) cell-x)
-        (robot-y robot) (clip-to-cell (+ (robot-y robot) (* dy moved)) cell-y)
+(declaim (inline move-within-cells move-through-cells))
+(defun move-within-cells (robot dx dy moved cell-x cell-y &optional (from-x cell-x) (from-y cell-y))
+  "Move ROBOT by MOVED metres in direction (DX,DY), but not out of the cells from FROM- to CELL-."
+  (declare (type robot robot) (type double-float dx dy moved) (type fixnum from-x from-y))
+  (setf (robot-x robot) (clip-to-cell (+ (robot-x robot) (* dx moved))
+                                      (min from-x cell-x) (max from-x cell-x))
+        (robot-y robot) (clip-to-cell (+ (robot-y robot) (* dy moved))
+                                      (min from-y cell-y) (max from-y cell-y))
         (robot-moved robot) moved))
 
 (defun move-through-cells (robot world dx dy distance)
@@ -144,7 +147,7 @@ metres moved in ROBOT-MOVED. Return the obstacle, :WALL, :THING or NIL."
     (declare (type double-float moved))
     (cond (block
            (meet-obstacle robot block dx dy moved (- distance moved) cell-x cell-y sideways))
-          (t (move-within-cell robot dx dy moved cell-x cell-y)
+          (t (move-within-cells robot dx dy moved cell-x cell-y)
              nil))))
 
 (defun meet-obstacle (robot block dx dy moved left cell-x cell-y sideways)
@@ -156,7 +159,7 @@ Return the obstacle that stops ROBOT, or NIL."
                       (may-cross-border-p y cell-y dy left)
                       (may-cross-border-p x cell-x dx left))))
     (cond ((only-touches-p (if sideways dx dy) left)
-           (move-within-cell robot dx dy moved cell-x cell-y)
+           (move-within-cells robot dx dy moved cell-x cell-y)
            (if sideways
                (continue-move robot 0d0 dy left moved)
                (continue-move robot dx 0d0 left moved)))
@@ -169,7 +172,9 @@ Return the obstacle that stops ROBOT, or NIL."
            (continue-move robot dx dy (+ moved left) 0d0))
           ((and crosses (pass-corner robot x y cell-x cell-y))
            (continue-move robot dx dy left moved))
-          (t (move-within-cell robot dx dy (max 0d0 (- moved +contact-gap+)) cell-x cell-y)
+          (t (move-within-cells robot dx dy (max 0d0 (- moved +contact-gap+)) cell-x cell-y
+                                (floor-to-fixnum (robot-x robot))
+                                (floor-to-fixnum (robot-y robot)))
              block))))
 
 (defun continue-move (robot dx dy distance moved)

@@ -14,12 +14,13 @@
   (declare (type double-float x))
   (the fixnum (floor (the (double-float -1d9 1d9) x))))
 
-(defun clip-to-cell (coordinate cell)
-  "Return COORDINATE or, if rounding moved it out of CELL, the nearest coordinate inside CELL."
-  (declare (type double-float coordinate) (type fixnum cell))
+(defun clip-to-cell (coordinate cell &optional (last cell))
+  "Return COORDINATE or, if rounding moved it out of CELL, the nearest coordinate inside CELL; with
+LAST, inside the cells from CELL to LAST."
+  (declare (type double-float coordinate) (type fixnum cell last))
   ;; The number before the far border is the greatest that is less.
   (max (float cell 1d0)
-       (min coordinate (* (float (1+ cell) 1d0) (- 1d0 double-float-negative-epsilon)))))
+       (min coordinate (* (float (1+ last) 1d0) (- 1d0 double-float-negative-epsilon)))))
 
 (define-constant +contact-gap+ 1d-6
   :documentation "The distance from an obstacle at which a robot stops, in metres. A line that is no
