@@ -60,7 +60,7 @@
                  (:file "patterns")
                  (:file "manipulations") (:file "manipulating") (:file "looking")
                  (:file "withdrawing") (:file "approaching") (:file "thinking") (:file "sending")
-                 (:file "stepping")
+                 (:file "stepping") (:file "pushing")
                  (:file "soundness")))
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "run")
@@ -372,6 +372,7 @@
                  (:file "several-plans-ten") (:file "several-joining")
                  (:file "several-rewinding") (:file "several-mistakes") (:file "messages")
                  (:file "messages-kept") (:file "messages-plans") (:file "steps")
+                 (:file "pushing")
                  (:file "measures") (:file "track-matching") (:file "track-matching-kept")
                  (:file "rangefinders") (:file "doors") (:file "run-variables")
                  (:file "run-variables-random")

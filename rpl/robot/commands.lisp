@@ -18,8 +18,8 @@
   (:error robot-movement-error*)
   (:pulse robot-stopped*))
 
-(define-outcome (robot-go-forward robot-go-distance robot-step robot-goto-wall robot-follow-wall
-                 robot-stop)
+(define-outcome (robot-go-forward robot-go-distance robot-step robot-push robot-goto-wall
+                 robot-follow-wall robot-stop)
     ()
   (:error robot-movement-error*)
   (:pulse robot-stopped*))

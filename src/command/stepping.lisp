@@ -74,6 +74,21 @@ drive to the middle of the next cell in DIRECTION."
             ((speed-zero-p robot) (fail-with operation :not-moving))
             (t (drive-for-step operation end))))))
 
+(defun begin-step (operation robot direction step)
+  "Let OPERATION, of ROBOT, begin a step in DIRECTION with the function named STEP."
+  (record-movement-start robot)
+  (if (speed-zero-p robot)
+      (fail-with operation :not-moving)
+      (multiple-value-bind (angle distance) (aim-step robot direction)
+        (cond ((> (time-to-move robot angle distance) step-duration*)
+               (fail-with operation :too-slow))
+              (t (setf (operation-left operation) distance
+                       (operation-subject operation)
+                       (list angle (+ (agenda-tick (operation-agenda operation))
+                                      (ticks-for step-duration*)
+                                      -1)))
+                 (go-on-now operation step))))))
+
 (define-command robot-step (operation (robot robot)
                             (direction direction "where to go; north is up in pictures"))
     ()
@@ -88,18 +103,7 @@ drive to the middle of the next cell in DIRECTION."
     "Turn ROBOT and drive it to the middle of the next cell in DIRECTION. A step takes
 STEP-DURATION* ticks, whatever its direction. The robot aims by its main odometer or, if
 STEP-BY-GRID* is true, by where it is."
-  (record-movement-start robot)
-  (if (speed-zero-p robot)
-      (fail-with operation :not-moving)
-      (multiple-value-bind (angle distance) (aim-step robot direction)
-        (cond ((> (time-to-move robot angle distance) step-duration*)
-               (fail-with operation :too-slow))
-              (t (setf (operation-left operation) distance
-                       (operation-subject operation)
-                       (list angle (+ (agenda-tick (operation-agenda operation))
-                                      (ticks-for step-duration*)
-                                      -1)))
-                 (go-on-now operation 'step-on))))))
+  (begin-step operation robot direction 'step-on))
 
 ;; The manual has none.
 (addition (robot-step :ars :nisp))

@@ -189,7 +189,9 @@ CLEAN-SIMULATION was not called, do nothing. Return nothing (manual, chapter 4).
 are enough for each direction." :addition t)
      (step-by-grid* nil "" :setting boolean
       "When true, a step is aimed from the robot's true position and heading, so that the errors of
-steps do not add up. When NIL, it is aimed from the estimate of the main odometer." :addition t))
+steps do not add up. When NIL, it is aimed from the estimate of the main odometer." :addition t)
+     (push-strength* 100 "" :limit (real 0 #.+largest+)
+      "The greatest weight of the things that a robot can push at once." :addition t))
     ("Cameras"
      (camera-angle-max-error* 0.02d0 "radians" :noise (real 0 #.+largest+)
       "The largest error of a designator's angle and of a camera's report of its turn.")
