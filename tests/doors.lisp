@@ -286,6 +286,47 @@
       (is (< 10 (robot:robot-x steward) 13) "seed ~D" seed)
       (is-true (world:closed-door-p (gate))))))
 
+(rpl:def-interp-proc cross-lodge (closed)
+  (ars-worlds:travel-to (ars-worlds:begin-reckoning (ars-worlds:here (driver:rpl-robot)))
+                        '(11.5 4.5) :closed closed)
+  (rpl:plan-time))
+
+(defun crossing-of-lodge (seed hatch-closed-p &optional closed)
+  "Return the values of RUN-PLAN of a drive into the other room."
+  (run:with-simulation (steward :seed seed)
+    (world:set-attribute (world:find-thing 'hatch) :closed hatch-closed-p)
+    (multiple-value-list (driver:run-plan 'cross-lodge closed))))
+
+(test travel-to.goes-another-way-at-a-closed-door
+  (dotimes (seed 4)
+    (destructuring-bind ((found how) (known known-how))
+        (list (crossing-of-lodge seed nil) (crossing-of-lodge seed nil '((7.5 4.5))))
+      (is (equal '(:succeeded :succeeded) (list how known-how)) "seed ~D" seed)
+      (is (< known found 200) "seed ~D" seed))))
+
+(test travel-to.fails-if-all-doors-are-closed-and-names-them
+  (dotimes (seed 4)
+    (destructuring-bind (failure how) (crossing-of-lodge seed t)
+      (is (eq :failed how))
+      (is (eq :cannot-get-there (rpl:failure-class failure)))
+      (is (= 2 (length (getf (rpl:failure-data failure) :closed))) "seed ~D" seed)
+      (is-true (member '(7.5 4.5) (getf (rpl:failure-data failure) :closed) :test #'equal))))
+  (is (search "travel-to: :closed is (7 4); give a list of points"
+              (princ-to-string (first (crossing-of-lodge 1 nil '(7 4)))))))
+
+(rpl:def-interp-proc close-behind ()
+  (let ((me (ars-worlds:begin-reckoning (ars-worlds:here (driver:rpl-robot)))))
+    (ars-worlds:visit-thing me 0 '((:door t) (:closed nil)))
+    (ars-worlds:manipulate-thing 'close 0 0 '((:door t)))))
+
+(test robots.close-the-door-of-the-doorway-that-they-visit-behind-them
+  (dotimes (seed 4)
+    (run:with-simulation (steward :seed seed)
+      (robot:place-robot steward 3.5 11.5 0)
+      (is (eq :succeeded (nth-value 1 (driver:run-plan 'close-behind))))
+      (is-true (world:closed-door-p (world:find-thing 'hatch)))
+      (is (< 8 (robot:robot-x steward) 8.5)))))
+
 ;;; For people.
 
 (test doors.are-shown-open-or-closed

@@ -24,15 +24,27 @@ fluent's value is NIL until the manipulation ends, then the error code, or :DONE
 
 (def-interp-proc manipulate-thing (name hand camera description &key with)
   "Do the manipulation NAME with HAND on something next to the robot that fits DESCRIPTION; WITH
-describes a tool in HAND, such as a key. Look for the thing and the tool before each attempt. Fails
-with :WILL-NOT-DO after twelve attempts."
-  (insistently (error (let ((target (look-closely camera description))
-                            (tool (if with (look-closely camera with)))
-                            (part (robot-hand (rpl-robot) hand)))
-                        (cond ((or (null target) (and with (null tool))) :not-found)
-                              (with (manipulation-outcome name target tool part))
-                              (t (manipulation-outcome name target part)))))
-    ((:already-open :already-closed) t)))
+describes a tool in HAND, such as a key. Look for the thing and the tool before each attempt. If the
+robot stands in the doorway whose door it is to close, it drives on through the doorway and turns
+round. Fails with :WILL-NOT-DO after twelve attempts."
+  (let ((target nil))
+    (insistently (error (let ((tool (if with (look-closely camera with)))
+                              (part (robot-hand (rpl-robot) hand)))
+                          (setf target (look-closely camera description))
+                          (cond ((or (null target) (and with (null tool))) :not-found)
+                                (with (manipulation-outcome name target tool part))
+                                (t (manipulation-outcome name target part)))))
+      ((:already-open :already-closed) t)
+      (:doorway-occupied (leave-doorway-of target camera) nil))))
+
+(def-interp-proc leave-doorway-of (door camera)
+  "DOOR is a local designator of a door. If the robot stands in its doorway, drive on until DOOR is
+.7 metres behind, within reach, turn round and turn CAMERA ahead."
+  (if (< (designator-distance door) .6)
+      (seq (drive-by (+ .7 (* (designator-distance door) (cosine (designator-angle door)))))
+           (turn-by pi)
+           (outcome (rpl-camera-align-robot camera)
+                    (vref camera-moved* camera) (vref camera-movement-error* camera)))))
 
 (def-interp-proc visit-thing (me camera description)
   "Drive the robot of the reckoning ME to something that fits DESCRIPTION; search at most eight

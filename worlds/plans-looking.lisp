@@ -3,16 +3,10 @@
 ;;; For any robot with a camera. A description is a descriptor specification of manual 3.4.2, such
 ;;; as ((:color blue) (:substance plastic)). Cameras often misread colours, overlook things and see
 ;;; things that are not there. So plans look several times. Next to a thing that seems to fit, they
-;;; check it again before a hand grasps it.
+;;; check it again, by CONFIRM-THING, before a hand grasps it.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
-
-(def-interp-proc look-for-things (camera type description)
-  "Return a list of the designators of things that CAMERA sees in one look and that fit DESCRIPTION.
-TYPE is :LOCAL or :NON-LOCAL."
-  (outcome (rpl-camera-get-all-object-designators camera type description)
-           (vref camera-input* camera) (vref camera-designators* camera)))
 
 (def-interp-proc turn-camera (camera angle)
   "Turn CAMERA by ANGLE, in radians. Return an error code or NIL."
@@ -35,19 +29,6 @@ TYPE is :LOCAL or :NON-LOCAL."
     (n-times 4 UNTIL found
       (setf found (first (look-for-things camera :non-local description))))
     found))
-
-;;; Checking. A thing that fits is found in more looks than one that does not. Each look adds to a
-;;; score or subtracts from it, until the score decides.
-
-(def-interp-proc confirm-thing (camera description)
-  "Look with CAMERA at local things until enough looks agree whether one of them fits DESCRIPTION.
-Return a local designator of this thing, or NIL."
-  (let ((score 0) (found nil))
-    (loop UNTIL (or (>= score 5) (<= score -5))
-      (let ((designators (look-for-things camera :local description)))
-        (cond (designators (incf score 2) (setf found (first designators)))
-              (t (decf score .5)))))
-    (if (plusp score) found nil)))
 
 ;;; Approaching.
 

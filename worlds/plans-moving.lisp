@@ -39,27 +39,63 @@
   (rpl-grab-robot)
   (wait-time 1))
 
-;;; Obstacles.
+;;; Looking at things. Checking: a thing that fits is found in more looks than one that does not.
+;;; Each look adds to a score or subtracts from it, until the score decides.
 
-(def-interp-proc feel-ahead (me)
+(def-interp-proc look-for-things (camera type description)
+  "Return a list of the designators of things that CAMERA sees in one look and that fit DESCRIPTION.
+TYPE is :LOCAL or :NON-LOCAL."
+  (outcome (rpl-camera-get-all-object-designators camera type description)
+           (vref camera-input* camera) (vref camera-designators* camera)))
+
+(def-interp-proc confirm-thing (camera description)
+  "Look with CAMERA at local things until enough looks agree whether one of them fits DESCRIPTION.
+Return a local designator of this thing, or NIL."
+  (let ((score 0) (found nil))
+    (loop UNTIL (or (>= score 5) (<= score -5))
+      (let ((designators (look-for-things camera :local description)))
+        (cond (designators (incf score 2) (setf found (first designators)))
+              (t (decf score .5)))))
+    (if (plusp score) found nil)))
+
+;;; Obstacles. A closed door feels like a wall. In a world with doors, a camera looks which it is.
+
+(defun doors-in-world-p (robot)
+  "True if the world of ROBOT has doors: only that, not where they are, or whether they are closed."
+  (some (lambda (thing) (get-attribute thing :door)) (world-thing-list (robot-world robot))))
+
+(def-interp-proc notice-closed-door (me camera)
+  "A wall has stopped the robot of the reckoning ME. If CAMERA sees a closed door beside the robot,
+let ME believe that the nearest doorway, or the cell ahead, is closed. Return true if so."
+  (reckon me)
+  (let ((cell (or (doorway-nearby me) (cell-of-point (point-ahead me .6)))))
+    (if (and (doors-in-world-p (rpl-robot))
+             (confirm-thing camera '((:door #t) (:closed #t))))
+        (seq (believe-closed me (adjoin (middle-of cell) (reckoning-closed me) :test #'equal))
+             t)
+        nil)))
+
+(def-interp-proc feel-ahead (me &optional camera)
   "Drive slowly ahead to find what stopped the robot of the reckoning ME. If a wall did, correct ME;
-if a thing did, remember it as an obstacle. Return :WALL, :THING, or NIL if nothing is ahead."
+if a thing did, remember it as an obstacle. Return :WALL, :THING, or NIL if nothing is ahead. With
+CAMERA, return :DOOR if a closed door did, and remember the door."
   (rpl-robot-set-speed .1)
   (rpl-robot-goto-wall)
   (if (wait-for robot-stopped* :timeout 12)
-      (cond ((null (fluent-value robot-movement-error*)) (reckon me) (correct-by-wall me) :wall)
-            (t (bar-cell-ahead me) :thing))
+      (cond ((fluent-value robot-movement-error*) (bar-cell-ahead me) :thing)
+            ((and camera (notice-closed-door me camera)) :door)
+            (t (reckon me) (correct-by-wall me) :wall))
       (seq (stand-still)
            (reckon me)
            nil)))
 
-(def-interp-proc drive-towards (me point)
-  "Drive the robot of the reckoning ME straight to POINT. Return :WALL or :THING if a wall or thing
-stopped the robot, else NIL."
+(def-interp-proc drive-towards (me point &optional camera)
+  "Drive the robot of the reckoning ME straight to POINT. Return NIL, or what stopped the robot, as
+FEEL-AHEAD does: :WALL, :THING or, with CAMERA, :DOOR."
   (turn-towards me point)
   (if (and (> (distance-left me point) .05)
            (drive-by (distance-left me point)))
-      (feel-ahead me)
+      (feel-ahead me camera)
       nil))
 
 ;;; Doorways. A camera guides the robot into them, because the error of dead reckoning may be larger
@@ -128,7 +164,7 @@ error code, or NIL when the robot is there."
 
 (def-interp-proc pass-doorway (me camera cell beyond)
   "Drive the robot of the reckoning ME through the nearby doorway CELL to the point BEYOND. Return
-:WALL or :THING if a wall or thing stopped the robot, else NIL."
+NIL, or what stopped the robot, as FEEL-AHEAD does: :WALL, :THING or :DOOR."
   (turn-towards me (middle-of cell))
   (let ((doorway (find-doorway camera))
         (stopped nil))
@@ -136,11 +172,11 @@ error code, or NIL when the robot is there."
         (case (go-to-designated camera doorway
                                 ;; There may be another doorway behind this one.
                                 (+ 14 (* 1.3 (distance-left me (middle-of cell)))))
-          (:robot-blocked (setf stopped (feel-ahead me))))
-        (setf stopped (drive-towards me (middle-of cell))))
+          (:robot-blocked (setf stopped (feel-ahead me camera))))
+        (setf stopped (drive-towards me (middle-of cell) camera)))
     (if (null stopped)
         (seq (take-bearings me)
-             (drive-towards me beyond))
+             (drive-towards me beyond camera))
         stopped)))
 
 ;;; Whole ways.
@@ -157,11 +193,11 @@ error code, or NIL when the robot is there."
   (camera-index (camera-with-widest-view (rpl-robot))))
 
 (def-interp-proc take-step-of-way (me camera step)
-  "Do STEP, a step that NEXT-STEP has returned, with the robot of the reckoning ME. Return :WALL or
-:THING if a wall or thing stopped the robot, else NIL."
+  "Do STEP, a step that NEXT-STEP has returned, with the robot of the reckoning ME. Return NIL, or
+what stopped the robot, as FEEL-AHEAD does: :WALL, :THING or :DOOR."
   (if (eq :door (first step))
       (pass-doorway me camera (second step) (third step))
-      (drive-towards me (second step))))
+      (drive-towards me (second step) camera)))
 
 (def-interp-proc turn-away (trouble)
   "Turn the robot and drive off, in another direction for each number TROUBLE."
@@ -169,11 +205,12 @@ error code, or NIL when the robot is there."
   (drive-by (+ 1 (mod trouble 3))))
 
 (def-interp-proc get-free (me stopped)
-  "Get the robot of the reckoning ME away from an obstacle. STOPPED is its kind, :WALL or :THING.
-Wait for a thing to move away; every third time turn and drive off. In a world with several robots,
-do what GIVE-WAY decides about a thing."
+  "Get the robot of the reckoning ME away from an obstacle. STOPPED is its kind: :WALL, :THING or
+:DOOR. Wait for a thing to move away; every third time turn and drive off. In a world with several
+robots, do what GIVE-WAY decides about a thing. The next way avoids a closed door."
   (let ((trouble (incf (reckoning-trouble me))))
-    (cond ((and (eq stopped :thing) (meets-robots-p me))
+    (cond ((eq stopped :door))
+          ((and (eq stopped :thing) (meets-robots-p me))
            (wait-time (give-way me)))
           (t (if (eq stopped :thing)
                  (wait-time (* 3 (mod trouble 3))))
@@ -201,15 +238,20 @@ do what GIVE-WAY decides about a thing."
                    (list (and (integerp patience) (plusp patience)) ":patience" patience
                          "a whole number, from 1")))
 
-(def-interp-proc travel-to (me point &key (tolerance 1) (patience 40) (camera (widest-camera)))
+(def-interp-proc travel-to (me point &key (tolerance 1) (patience 40) (camera (widest-camera))
+                               (closed '()))
   "Drive the robot of the reckoning ME to POINT, a list (x y), to within TOLERANCE metres, through
-doorways and round obstacles. Return the estimated position. Fails with :CANNOT-GET-THERE after
-PATIENCE obstacles or 300 steps, or at once if there is no way; or with WRONG-ARGUMENT. If other
-robots are in the way, the robot waits, plans another way or gives way to them."
+doorways and round obstacles, but not through the doors at CLOSED, a list of points. If a door turns
+out to be closed, the robot goes another way. Return the estimated position. Fails with
+:CANNOT-GET-THERE after PATIENCE obstacles or 300 steps, or at once if there is no way; its data
+have as :CLOSED the points of all doors believed to be closed. Or fails with WRONG-ARGUMENT. If
+other robots are in the way, the robot waits, plans another way or gives way to them."
   (check-arguments 'travel-to
                    (list (typep me 'reckoning) "me" me "a reckoning: see BEGIN-RECKONING")
                    (list (number-list-p point 2) "point" point "a list (x y) of numbers of metres"))
+  (check-points 'travel-to ":closed" closed)
   (check-tolerance-and-patience 'travel-to tolerance patience)
+  (believe-closed me closed)
   (evap-protect (travel-step-by-step me point tolerance patience camera)
                 (show-way me '())))
 
@@ -222,7 +264,8 @@ robots are in the way, the robot waits, plans another way or gives way to them."
       (let ((step (next-step-of me (present-goal me point))))
         (incf steps)
         (if (or (null step) (> (reckoning-trouble me) limit) (> steps 300))
-            (fail :class :cannot-get-there :point point :believed (reckon me)))
+            (fail :class :cannot-get-there :point point :believed (reckon me)
+                  :closed (reckoning-closed me)))
         (let ((stopped (take-step-of-way me camera step)))
           (if stopped (get-free me stopped)))
         (let ((ticks (ticks-at-passing-place me)))

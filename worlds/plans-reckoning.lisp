@@ -16,6 +16,8 @@
   (driven 0d0 :type real)
   ;; A list of (cell cost until): the extra cost of the cell until that tick.
   (barred '() :type list)
+  ;; The points of the doors that are believed to be closed.
+  (closed '() :type list)
   (trouble 0 :type fixnum)
   ;; For meetings with other robots: see traffic.lisp.
   (passing-place nil :type list)
@@ -100,7 +102,8 @@ position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING.
 
 (defun update-barred-cells (me)
   "Bar on the chart of ME exactly the cells that ME has noted as barred, each at a cost of at most
-90. Remove the shown way, because it may no longer be the best."
+90, and the doors that ME believes to be closed. Remove the shown way, because it may no longer be
+the best."
   (show-way me '())
   (let ((chart (reckoning-chart me)) (sums '()))
     (loop for (cell cost) in (reckoning-barred me)
@@ -111,7 +114,15 @@ position, a point. Signals MISUSE if ME is no longer valid: see BEGIN-RECKONING.
     (free-all-cells chart)
     (loop for (cell cost) in sums
           when (apply #'no-wall-at-p (chart-map chart) cell)
-            do (bar-cell chart cell cost))))
+            do (bar-cell chart cell cost))
+    (dolist (door (reckoning-closed me))
+      (when (apply #'no-wall-at-p (chart-map chart) door) (bar-cell chart door)))))
+
+(defun believe-closed (me doors)
+  "Let the reckoning ME believe that DOORS, a list of points (x y), are closed, and no others."
+  (unless (equal doors (reckoning-closed me))
+    (setf (reckoning-closed me) doors)
+    (update-barred-cells me)))
 
 (defun bar-cells-around (me point cost until)
   "Add COST to the cell at POINT, and an eighth of COST to the cells around, until the tick UNTIL."
