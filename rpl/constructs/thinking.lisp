@@ -6,14 +6,12 @@
 ;;; meanwhile, or all of them stop.
 
 (defun price-of (operator span unit)
-  "Return the price SPAN of OPERATOR in ticks. UNIT is :ticks or :seconds. Signals WRONG-ARGUMENT.
-The price of THINK is exact."
+  "Return the exact price SPAN of OPERATOR in ticks. UNIT is :ticks or :seconds. Signals
+WRONG-ARGUMENT."
   (let ((span (fluent-value span)))
     (unless (amount-p span)
       (reject-argument operator 'span span "a number from 0 to 1e15"))
-    (if (eq operator 'think)
-        (exact-span-in-ticks span unit operator)
-        (span-in-ticks span unit operator))))
+    (exact-span-in-ticks span unit operator)))
 
 (defun price-lambda (operator span unit form scope)
   (check-unit unit form)
@@ -63,14 +61,14 @@ true, all other tasks stop, policies too, and react afterwards. Return NIL. Sign
 (defstruct (thought (:constructor make-thought (ticks alone start)) (:copier nil))
   "The state of a WITH-CHARGE. The thought takes TICKS from the tick START on, and if ALONE is true,
 other tasks stop meanwhile. The body of the WITH-CHARGE has ended with RESULT or SIGNAL."
-  (ticks 0 :type real :read-only t)
+  (ticks 0 :type (integer 0) :read-only t)
   (alone nil :read-only t)
   (start 0 :type real :read-only t)
   (result nil)
   (signal nil))
 
 (defun begin-thought (task ticks alone)
-  (make-thought (if (takes-time-p task ticks) ticks 0) alone (runner-tick (task-runner task))))
+  (make-thought (whole-ticks-to-think task ticks) alone (runner-tick (task-runner task))))
 
 (defun ticks-left (thought task)
   (let ((now (runner-tick (task-runner task))))
@@ -94,8 +92,8 @@ other tasks stop meanwhile. The body of the WITH-CHARGE has ended with RESULT or
   "Run BODY in a plan, as a separate task, at the price of SPAN ticks, or seconds if UNIT is
 :seconds. Return the first value of BODY. If thinking is charged, the steps of BODY do not count.
 WITH-CHARGE then ends SPAN after the start of BODY, or with BODY if BODY ends later. If ALONE is
-true, other tasks stop after BODY until the price is paid, as for THINK. If thinking is not charged,
-just run BODY. A task that evaporates does not wait for the rest of SPAN. Signals WRONG-ARGUMENT
+true, other tasks stop after BODY until the price is paid. Fractions of a tick add up as for THINK. If
+thinking is not charged, just run BODY. A task that evaporates does not wait for the rest of SPAN. Signals WRONG-ARGUMENT
 (manual 1.2)."
   (:arguments span alone)
   (:parts (span function (price-lambda 'with-charge span unit form scope))

@@ -99,14 +99,15 @@ next tick. WHICH is the agent of these plans, or a plan runner for its first age
 (addition charge-ticks)
 (defun charge-ticks (ticks &optional (which (calling-agent)))
   "Stop all plans of the robot for TICKS, 0 or more, once the current step has ended. For Lisp code
-of plans whose cost is known only while the code runs. Commands go on; afterwards the plans react to
-what has happened. If thinking is not charged, do nothing. WHICH is as for EXHAUST-REACTION. Returns
-nothing. Signals WRONG-ARGUMENT."
+of plans whose cost is known only while the code runs. Fractions of a tick add up as for THINK.
+Commands go on; afterwards the plans react to what has happened. If thinking is not charged, do
+nothing. WHICH is as for EXHAUST-REACTION. Returns nothing. Signals WRONG-ARGUMENT."
   (check-argument charge-ticks ticks (amount-p ticks) "a number of ticks, from 0 to 1e15")
   (note-from-outside #'charge-ticks which ticks)
   (let ((agent (and which (agent-of which))))
-    (when (and agent (agent-charged-p agent) (plusp ticks))
-      (stop-agent agent ticks)))
+    (when (and agent (agent-charged-p agent))
+      (let ((whole (ticks-to-think (agent-client agent) agent ticks)))
+        (when (plusp whole) (stop-agent agent whole)))))
   (values))
 
 (defun count-steps (steps agent task)
