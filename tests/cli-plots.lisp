@@ -38,6 +38,26 @@ STEP passes ticks."
                            "plot robot-place*" "plot hand-moved* 1" "plot robot-stopped*"
                            "(drive)" "step 20"))))
 
+(run:define-run-variable ars-user::*plotted-score* 4
+  "The points that the robot has, with a remark that is much too long for the title of a chart, since
+it goes on and on until nobody reads it any more.")
+(run:defmeasure ars-user::plotted-doubled "Twice the score." (* 2 ars-user::*plotted-score*))
+
+(test plot.takes-run-variables-and-measures
+  (is (equal '("1 *plotted-score* 7 at tick 5" "2 plotted-doubled 14 at tick 5")
+             (plots-listed "plot *plotted-score*" "plot plotted-doubled" "step 3"
+                           "(setf *plotted-score* 7)" "step 2")))
+  (is-true (has-words-p (complaint "plot *ploted-score*") "did you mean *plotted-score*?"
+                        "a run variable"))
+  (with-scratch-file (path "svg")
+    (type-batch "plot *plotted-score*" "plot plotted-doubled" "step 1"
+                (format nil "plot-picture ~A" (uiop:native-namestring path)))
+    (let ((svg (uiop:read-file-string path)))
+      (is (mentions-p svg ">Twice the score.<"))
+      (is (mentions-p svg ">The points that the robot has, with"))
+      (is (mentions-p svg "...<"))
+      (is (not (mentions-p svg "nobody reads"))))))
+
 (test plot.does-not-count-as-reading-a-fluent
   (in-studio (robot)
     (let ((fluent (rpl:create-fluent "seen" 41)))

@@ -104,21 +104,34 @@ If the fluent is only pulsed, the quantity is the number of pulses."
                                             (funcall function robot)))
                  t))
 
-(defun measure-quantity (measure)
-  (make-quantity (string-downcase (measure-name measure)) ""
+(defun run-quantity (name documentation function)
+  "Return the quantity NAME, a symbol, that FUNCTION computes from the state of the current run."
+  (make-quantity (string-downcase name) ""
                  (stateless-maker (lambda (robot tick)
                                     (declare (ignore robot tick))
-                                    (measure-value measure)))
-                 t))
+                                    (funcall function)))
+                 t documentation))
+
+(defun measure-quantity (measure)
+  (let ((name (measure-name measure)))
+    (run-quantity name (documentation name 'measure) (lambda () (measure-value measure)))))
+
+(defun run-variable-quantity (name)
+  (run-quantity name (documentation name 'variable) (lambda () (run-variable name))))
 
 (defun measure-names ()
   "Return the names of all measures, as typed."
   (mapcar (lambda (measure) (string-downcase (measure-name measure))) (all-measures)))
 
+(defun run-variable-names ()
+  "Return the names of all run variables, as typed."
+  (mapcar #'string-downcase (mapcar #'variable-definition-name (all-run-variables))))
+
 (defun plottable-names (robot)
   "Return the names of the quantities and fluents of ROBOT that can be plotted."
   (append (mapcar #'quantity-name *named-quantities*)
           (measure-names)
+          (run-variable-names)
           (loop for (variable kind) in (all-fluent-variables)
                 for name = (string-downcase variable)
                 if kind
@@ -128,10 +141,12 @@ If the fluent is only pulsed, the quantity is the number of pulses."
 
 (defun plottable-text ()
   "Return a text about what can be plotted."
-  (format nil "~{~A~^, ~}~@[; a measure (~{~A~^, ~})~]; a fluent, such as robot-stopped* or ~
-               hand-moved* 0; or a function of a robot, such as robot-x or (lambda (robot) ...)"
+  (format nil "~{~A~^, ~}~@[; a measure (~{~A~^, ~})~]~@[; a run variable (~{~A~^, ~})~]; a ~
+               fluent, such as robot-stopped* or hand-moved* 0; or a function of a robot, such as ~
+               robot-x or (lambda (robot) ...)"
           (mapcar #'quantity-name *named-quantities*)
-          (names-to-show (measure-names))))
+          (names-to-show (measure-names))
+          (names-to-show (run-variable-names))))
 
 (defun reject-plot (text)
   (let ((similar (nearest-name text (plottable-names (session-robot)))))
@@ -151,6 +166,7 @@ If the fluent is only pulsed, the quantity is the number of pulses."
         ((or (null datum) (not (symbolp datum))) (reject-plot text))
         ((fluent-variable-p datum) (find-fluent-quantity datum index))
         ((find-measure datum nil) (measure-quantity (find-measure datum)))
+        ((find-run-variable datum nil) (run-variable-quantity datum))
         ((and (fboundp datum) (not (macro-function datum)) (not (special-operator-p datum)))
          (function-quantity (string-downcase datum) datum))
         (t (reject-plot text))))
@@ -227,7 +243,9 @@ If the fluent is only pulsed, the quantity is the number of pulses."
     (:seeing
      "PLOT speed, PLOT distance and PLOT odometer-error plot what the robot drives in a tick, what
 it has driven since then, and the distance between its position and the estimate of its odometer."
-     "PLOT tidiness plots the measure that (defmeasure tidiness ...) has defined; see MEASURE."
+     "PLOT tidiness plots the measure that (defmeasure tidiness ...) has defined; see MEASURE. PLOT
+*score* plots the run variable of (define-run-variable *score* ...). Their titles are from their
+docstrings."
      "PLOT robot-place* and PLOT hand-moved* 0 plot fluents. For a fluent that is only pulsed, the
 number of pulses is plotted. In place of a truth value, 1 is true and 0 is NIL."
      "PLOT my-function and PLOT (lambda (robot) (robot-x robot)) call a function of the robot after
@@ -249,6 +267,7 @@ a 256th part of the curve. So no peak is lost.")
 (define-argument-choices :plot
   (append (mapcar #'quantity-name *named-quantities*)
           (measure-names)
+          (run-variable-names)
           (loop for (variable) in (all-fluent-variables) collect (string-downcase variable))
           '("off")))
 

@@ -9,15 +9,17 @@
 ;;; curves, so curves begin anew in a fork or trial, and continue when the prompt comes back. The
 ;;; observer removes itself when there is nothing to sample. No thread waits for that.
 
-(defstruct (quantity (:constructor make-quantity (name unit maker &optional user-code-p))
+(defstruct (quantity (:constructor make-quantity
+                         (name unit maker &optional user-code-p description))
                      (:copier nil))
   "A quantity that can be plotted. The function MAKER takes the value and the tick from which to
 continue, NIL at the beginning. It returns a function of a robot and the present tick that returns
-the value. USER-CODE-P is true if that function may signal errors."
+the value. USER-CODE-P is true if that function may signal errors. DESCRIPTION is a text or NIL."
   (name "" :type string :read-only t)
   (unit "" :type string :read-only t)
   (maker nil :type function :read-only t)
-  (user-code-p nil :type boolean :read-only t))
+  (user-code-p nil :type boolean :read-only t)
+  (description nil :type (or null string) :read-only t))
 
 (defstruct (plotted (:constructor make-plotted (quantity series function)) (:copier nil))
   "A quantity that is plotted for a robot of a run. FUNCTION returns its value; NIL after an error."
@@ -118,7 +120,8 @@ samples are taken while SHOWN-P is NIL. LOCK guards the curves and what observer
 
 (defun begin-to-plot (quantity index)
   (make-plotted quantity
-                (make-time-series (quantity-name quantity) (quantity-unit quantity) index)
+                (make-time-series (quantity-name quantity) (quantity-unit quantity) index
+                                  (one-line (or (quantity-description quantity) "")))
                 (funcall (quantity-maker quantity) nil nil)))
 
 (defun unused-index (plotted)

@@ -5,7 +5,7 @@
 (export '(time-chart time-chart-series collect-time-charts draw-time-charts
           sample-range-at sample-text value-and-unit-text time-charts-svg +time-chart-height+))
 
-;;; A chart has a line with the name, the unit and the last value; below it is the curve between two
+;;; A chart has a line with the name, the description, the last value and the unit; below it is the curve between two
 ;;; axes. All charts share the ticks of the axis across. Charts are collected before they are drawn,
 ;;; because a curve may grow while it is drawn.
 
@@ -143,11 +143,23 @@ NEXT, the range after it or NIL, is the last."
                           points
                           (list* (- (first points) 1) (second points) points))))))))
 
+(defun beginning-of-text (text width)
+  "Return TEXT, cut after a word, with dots, unless it fits in WIDTH pixels. The least is no text."
+  (let ((lines (wrap-text text (max 1 (- width (text-width "..." +text-size+))))))
+    (cond ((or (null lines) (<= (text-width text +text-size+) width)) text)
+          ((< width 40) "")
+          (t (format nil "~A..." (first lines))))))
+
 (defun draw-time-chart-title (canvas chart y)
-  (let ((series (time-chart-series chart)))
-    (draw-text-lines canvas 6 (+ y 13) (list (time-series-name series)) :bold-p t)
-    (draw-text-lines canvas (axis-to (time-chart-across chart)) (+ y 13)
-                     (list (time-chart-note chart))
+  (let* ((series (time-chart-series chart)) (name (time-series-name series))
+         (left (+ 14 (text-width name +text-size+ t)))
+         (right (axis-to (time-chart-across chart)))
+         (room (- right left 8 (text-width (time-chart-note chart) +text-size+))))
+    (draw-text-lines canvas 6 (+ y 13) (list name) :bold-p t)
+    (draw-text-lines canvas left (+ y 13)
+                     (list (beginning-of-text (time-series-description series) room))
+                     :color +faint-text-color+)
+    (draw-text-lines canvas right (+ y 13) (list (time-chart-note chart))
                      :anchor :end :color (series-color (time-series-index series)))))
 
 (defun draw-chart-axes (canvas across upward)

@@ -28,13 +28,15 @@ of the intervals, LOWS and HIGHS the least and the greatest values."
   (lows (make-level-buffer 'double-float) :type (level-buffer double-float) :read-only t)
   (highs (make-level-buffer 'double-float) :type (level-buffer double-float) :read-only t))
 
-(define-record (time-series (:constructor make-time-series (name unit index)
-                          "Return a time series without samples. NAME and UNIT are strings. INDEX
-chooses its colour."))
+(define-record (time-series (:constructor make-time-series (name unit index
+                                                                   &optional (description ""))
+                          "Return a time series without samples. NAME, UNIT and DESCRIPTION are
+strings. INDEX chooses its colour."))
   "The samples of a quantity over time. One thread at a time may use it."
   (name "" string "the name of the quantity" :export)
   (unit "" string "the unit of the quantity, or an empty string" :export)
   (index 0 fixnum "the number that chooses the colour of the time series" :export)
+  (description "" string "what the quantity is, for the titles of charts; or an empty string")
   (levels (list (make-level 1)) list "" :writable)
   (last-tick -1 fixnum "" :writable))
 
