@@ -97,6 +97,31 @@
 (defun getf-measure (replay name)
   (second (assoc name (getf replay :measures) :test #'string-equal)))
 
+(run:define-run-variable *pickings* '())
+
+(experiment:defexperiment orchard-kinds
+  (:robots picker)
+  (:run (push (world:find-thing 'apple) *pickings*) t)
+  (:measure (pair (vector 1/2 "a" 'b)) (nested (list #() '(1) nil)) (none '())
+            (hollow #()) (picked *pickings*) (apple (first *pickings*)) (robot picker) (char #\a)))
+
+(test experiment.measures-what-run-variables-can-have
+  (let ((results (experiment:run-experiment 'orchard-kinds :trials 1 :stream nil)))
+    (is (equal '("[0.5, \"a\", \"b\"]" "[[], [1], false]" nil "[]" "[\"apple#1\"]" "apple#1"
+                 "picker" "a")
+               (loop for name in (experiment:results-measures results)
+                     append (column-of results name))))))
+
+(experiment:defexperiment orchard-odd
+  (:robots picker)
+  (:run t)
+  (:measure (table (make-hash-table))))
+
+(test experiment.refuses-measures-that-are-no-data
+  (let ((text (getf (experiment:replay-trial 'orchard-odd 1 1) :error)))
+    (is-true (has-words-p text "Error in the measure table" "a list of lists (key value)")
+             "~A" text)))
+
 (experiment:defexperiment hopeless-trip
   (:robots picker)
   (:run t)

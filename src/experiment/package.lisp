@@ -16,7 +16,8 @@ resumed, on all processors and on many machines. Names lparallel.")
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
                 #:custody-questions #:timeline-phase
                 #:seconds-now #:check-rate #:thinking-mode-p #:thinking-modes-text)
-  (:import-from :ars-magna.robot #:find-blueprint #:all-blueprints #:blueprint-name
+  (:import-from :ars-magna.world #:thing)
+  (:import-from :ars-magna.robot #:robot #:find-blueprint #:all-blueprints #:blueprint-name
                 #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
                 #:find-procedure #:procedure #:procedure-p #:procedure-name #:procedure-source

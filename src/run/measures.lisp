@@ -26,7 +26,8 @@
 (define-user-macro defmeasure (&whole form name &body forms &environment environment)
   "Define the measure NAME. FORMS, which may begin with a docstring, compute its value from the
 state of the run in which it is read, such as (thing-x (find-thing 'ball)); see MEASURE-VALUE. They
-must only read. Return NAME. Signals MALFORMED-DEFINITION."
+must only read. In experiments the value is what a run variable can have: plain data, or things and
+robots of the run. Return NAME. Signals MALFORMED-DEFINITION."
   (let ((definition (definition-title "defmeasure" name)))
     (expand-definition
      form environment

@@ -121,11 +121,11 @@ question that the experiment asks. Return NAME. Signals MALFORMED-DEFINITION. Th
   (:until form)              after :run, ticks pass until FORM is true: for continuations
   (:success form)            whether the trial succeeded: evaluated at its end, see TRIAL-VALUES.
                              If :run succeeds but FORM is false, the trial fails: only-believed
-  (:measure (name form)...)  values at the end of the trial: numbers, T or NIL, symbols, strings,
-                             or :NONE for no value. In place of (name form) also the name of a
-                             measure, see DEFMEASURE; or (name :over summary), with the summary
-                             :MEAN, :SUM, :MAX or :MIN of the measure's values before the first tick
-                             and after each tick, in the column NAME-SUMMARY
+  (:measure (name form)...)  values at the end of the trial: what run variables can have, see
+                             DEFINE-RUN-VARIABLE; or :NONE for no value. In place of (name form)
+                             also the name of a measure, see DEFMEASURE; or (name :over summary),
+                             with the summary :MEAN, :SUM, :MAX or :MIN of the measure's values
+                             before the first tick and after each tick, in the column NAME-SUMMARY
   (:each-tick (name form)...)  values before the first tick and after each tick, once plans have
                              run; kept in series.csv, see TRIAL-SERIES. In place of (name form)
                              also the name of a measure. The forms must only read.

@@ -5,7 +5,7 @@
 (export '(number-from-text))
 
 ;;; R, pandas and sqlite must read numbers as numbers. So floats have no Lisp exponent marker,
-;;; ratios become floats, booleans are TRUE or FALSE, and lists are JSON.
+;;; ratios become floats, booleans are TRUE or FALSE, and lists and vectors are JSON.
 
 ;;; Reader and printer.
 
@@ -69,6 +69,11 @@ that it is the same in each run."
   "True if VALUE may be in a table: a number, symbol, string, character, or a list of these."
   (and (tree-p value) (simple-table-value-p value)))
 
+(defun measured-value-p (value)
+  "True if VALUE may be the value of a measure: plain data, things and robots, as in run variables."
+  (or (table-value-p value)
+      (plain-datum-p value (lambda (object) (typep object '(or thing robot))))))
+
 (defun integer-text (integer)
   (format nil "~D" integer))
 
@@ -78,12 +83,13 @@ that it is the same in each run."
     (ratio (float-text (float number 1d0)))
     (float (float-text number))))
 
-;; Programs that read tables can take JSON lists apart, but not Lisp lists.
+;; Programs that read tables can take JSON lists apart, but not Lisp lists. An empty list is NIL.
 (defun json-text (value)
   (typecase value
     (boolean (if value "true" "false"))
     (number (exact-number-text value))
-    (cons (format nil "[~{~A~^, ~}]" (mapcar #'json-text value)))
+    ((or cons simple-vector)
+     (format nil "[~{~A~^, ~}]" (cl:map 'list #'json-text value)))
     (string (json-string-text value))
     (t (json-string-text (unquoted-text value)))))
 
@@ -93,7 +99,7 @@ that it is the same in each run."
 (defun plain-value-text (value)
   (typecase value
     (number (exact-number-text value))
-    (cons (plain-text (json-text value)))
+    ((or cons simple-vector) (plain-text (json-text value)))
     (string (plain-text value))
     (t (plain-text (unquoted-text value)))))
 

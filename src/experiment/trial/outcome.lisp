@@ -91,8 +91,8 @@ a fluent or the failure of a plan."
   "Return the text of the value of FUNCTION, the measure NAME in CLAUSE. Signals WRONG-ARGUMENT if a
 table cannot have that value."
   (let ((value (call-trial-form function condition)))
-    (unless (table-value-p value)
-      (reject-argument clause name value "a number, symbol, string or list of them"))
+    (unless (measured-value-p value)
+      (reject-argument clause name (abridged value) (values-expected-text value)))
     (value-text value)))
 
 (defvar *inspecting-p* nil
