@@ -375,7 +375,7 @@
                  (:file "pushing")
                  (:file "measures") (:file "track-matching") (:file "track-matching-kept")
                  (:file "rangefinders") (:file "doors") (:file "run-variables")
-                 (:file "run-variables-random")
+                 (:file "run-variables-mistakes") (:file "run-variables-random")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")

@@ -8,9 +8,6 @@
 (run:define-run-variable *haul* '())
 (run:define-run-variable *draw-of-run* (random 1000000))
 (run:define-run-variable *lucky-thing* (world:find-thing 'buoy))
-(run:define-run-variable *wrong-init* (make-hash-table))
-(run:define-run-variable *selfish* (1+ *selfish*))
-(run:define-run-variable *mover* (progn (run:set-seed 3) 1))
 (run:define-run-variable *never-used* 5)
 
 (defvar *tallies* 0 "A variable that all runs share.")
@@ -67,14 +64,6 @@
         (is (eq (world:find-thing 'buoy) *lucky-thing*))
         (is (not (eq outer *lucky-thing*)))))))
 
-(test init-form.that-is-wrong-says-so-at-the-first-use
-  (in-lagoon ()
-    (is (search "*wrong-init* is #<HASH-TABLE" (text-of-error (lambda () *wrong-init*))))
-    (is (search "uses *selfish* itself" (text-of-error (lambda () *selfish*))))
-    (is (search "cannot be commanded or changed" (text-of-error (lambda () *mover*))))
-    (setf *wrong-init* 3)
-    (is (= 3 *wrong-init*))))
-
 (test value.is-checked-when-it-is-set
   (in-lagoon ()
     (dolist (value (list 1/3 2.5d0 :key 'symbol #\a "text" '(1 (2 "b")) #(1 #(2)) nil otter
@@ -105,15 +94,6 @@
       (is (= (run:state-digest) (replayed-digest))))))
 
 ;;; Definitions.
-
-(test define-run-variable.refuses-other-variables
-  (loop for (form text) in '(((run:define-run-variable *tallies* 0) "(unintern '*tallies*)")
-                             ((run:define-run-variable pi 0) "belongs to COMMON-LISP")
-                             ((run:define-run-variable :key 0) "a symbol as the name")
-                             ((run:define-run-variable everywhere-later 0) "is a symbol macro")
-                             ((run:define-run-variable *new-tally*) "name init")
-                             ((run:define-run-variable *new-tally* 0 :doc) "[string]"))
-        do (is (search text (text-of-error (lambda () (eval form)))))))
 
 (test run-variables.of-one-name-in-two-packages-are-two
   (let* ((packages (list (make-package "TALLY-A" :use '()) (make-package "TALLY-B" :use '())))
@@ -386,11 +366,3 @@
              "~A" text)))
 
 (run:defmeasure weight-of-catch "What the catch weighs." *catch*)
-
-(test define-run-variable.of-a-name-of-the-simulator-says-so
-  (flet ((text (name)
-           (princ-to-string
-            (nth-value 1 (ignore-errors
-                          (macroexpand-1 `(run:define-run-variable ,name 1)))))))
-    (is-false (has-words-p (text 'base:motion-noise*) "DEFVAR") "~A" (text 'base:motion-noise*))
-    (is-true (has-words-p (text 'base:motion-noise*) "a name that is free"))))

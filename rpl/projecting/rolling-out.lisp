@@ -160,7 +160,10 @@ change only runs that it makes. Changes to existing fluents have no effect outsi
       (progv *simulation-variables* (mapcar #'symbol-value *simulation-variables*)
         (let ((*simulation* nil) (*world* nil) (*default-interface* nil)
               (*realm* (fork-realm *realm*)))
-          (with-seclusion (funcall function)))))))
+          (with-seclusion ("This object belongs to another run than the one that was made for ~
+                            this code, and cannot be commanded or changed here. To get the objects ~
+                            of this run, use names of robots, and FIND-THING.")
+            (funcall function)))))))
 
 (defun run-rollout-in-belief (scene trial seed)
   (unless *simulation*

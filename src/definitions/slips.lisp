@@ -77,12 +77,15 @@ of the function that it calls; else NIL. The layer that defines commands has a m
 
 ;;; Variables.
 
+(defun run-variables-p (registry)
+  (same-name-p 'run-variable (registry-kind registry)))
+
 (defun definition-name-hint (name)
   "If the unbound symbol NAME names a definition, return a sentence that says so; else NIL."
   (loop for registry in (users-registries)
         for entry = (lookup-entry name registry)
         when (and entry (not (entry-variable entry)))
-          return (if (same-name-p 'run-variable (registry-kind registry))
+          return (if (run-variables-p registry)
                      "Define a run variable before the code that uses it, and compile that again."
                      (format nil "It is the name of ~:[a~;an~] ~A: write '~(~A~)."
                              (find (char (registry-usual-name registry) 0) "aeiou")
@@ -136,6 +139,19 @@ NIL."
                         (first (simple-condition-format-arguments condition)))))
     (and character (second (assoc character *dispatch-remedies* :test #'char-equal)))))
 
+;;; A run variable is a symbol macro, of which DEFVAR and DEFPARAMETER cannot make a variable.
+
+(defun proclaimed-run-variable-text (condition)
+  "If CONDITION is that a run variable cannot become a special variable, return a remedy; or NIL."
+  (when (starts-with-subseq "Cannot proclaim" (simple-condition-format-control condition))
+    (loop with run-variables = (find-if #'run-variables-p (users-registries))
+          for name in (simple-condition-format-arguments condition)
+          when (and name (symbolp name) (lookup-entry name run-variables))
+            return (format nil "~(~A~) is a run variable, which has a separate value in each run: ~
+                                ~:*remove its DEFVAR or DEFPARAMETER, or first evaluate (undefine ~
+                                'run-variable '~(~A~))."
+                           name))))
+
 ;;; Types.
 
 (defgeneric value-to-pass-text (datum)
@@ -162,6 +178,7 @@ value to pass in its place; or NIL.")
     (undefined-function (undefined-function-text (cell-error-name condition)))
     (unbound-variable (unbound-variable-text (cell-error-name condition)))
     (reader-error (unreadable-syntax-text condition))
+    (simple-error (proclaimed-run-variable-text condition))
     (type-error (or (type-remedy (type-error-datum condition)
                                  (type-error-expected-type condition))
                     (value-to-pass-text (type-error-datum condition))))))

@@ -20,7 +20,7 @@
              `(progn ,@(loop for type in types
                              collect `(defmethod print-object :after ((condition ,type) stream)
                                         (write-report-addition condition stream))))))
-  (define-additions undefined-function unbound-variable reader-error type-error))
+  (define-additions undefined-function unbound-variable reader-error type-error simple-error))
 
 ;;;; The front end, such as the prompt, that can ask a person
 

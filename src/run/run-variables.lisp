@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.run)
 
-(export '(initialize-run-variables run-variables-used shown-run-variables all-run-variables))
+(export '(initialize-run-variables run-variables-used shown-run-variables all-run-variables
+          find-run-variable run-variable values-expected-text))
 
 ;;; A run variable is a symbol macro, not a special variable: any thread reads the value of its
 ;;; current run. The values are a slot of the run's world, so forks, rewinds and saved runs have
@@ -35,6 +36,12 @@
     (unless (run-variable-name-p name) (set-symbol-macro name `(run-variable ',name)))))
 
 (defun definition-of-variable (name)
+  ;; A value of the symbol would not be the value in any run.
+  (when (boundp name)
+    (reject-use "~A has a value outside of runs, which SET, SYMBOL-VALUE or code compiled before ~
+                 its DEFINE-RUN-VARIABLE has set. Evaluate (makunbound '~(~A~)), use SETF of the ~
+                 run variable, and compile such code again."
+                name name))
   (or (get name 'run-variable)
       (reject-name "run variable" name (names-to-suggest *run-variables*))))
 
@@ -50,9 +57,9 @@
   (plain-datum-p value (lambda (object) (object-of-world-p object world))))
 
 (defun values-expected-text (value)
-  "Return a text about what a run variable can have instead of VALUE."
-  (format nil "plain data (numbers, symbols, characters, strings, lists, vectors), or things and ~
-               robots of the current run: ~A"
+  "Return a text about what a run variable or measure can have instead of VALUE."
+  (format nil "plain data (numbers, symbols, characters, strings, lists, simple vectors), or things ~
+               and robots of the current run: ~A"
           (typecase value
             ((or thing robot) "(counterpart OBJECT) returns the object of the current run")
             (hash-table "a list of lists (key value) can replace a table")
@@ -80,17 +87,29 @@
   "Return the random state for the initial value of NAME, which depends on the seed of WORLD."
   (seeded-random-state (dice-state (make-dice (world-seed world) (qualified-name name)))))
 
+(defun reject-init-form (name condition)
+  "Signal MISUSE: the init form of the run variable NAME has signalled CONDITION."
+  (reject-use "The init form of the run variable ~(~A~) failed: ~A~:[~; Correct the form and define ~
+               the variable again, or set it before it is read.~]"
+              name (add-full-stop (one-line-text condition))
+              ;; Else CONDITION is about the init form of another variable, and says so.
+              (eq name (first *variables-being-initialized*))))
+
+(defun value-of-init-form (name world)
+  (let ((function (variable-definition-function (definition-of-variable name)))
+        (*variables-being-initialized* (cons name *variables-being-initialized*))
+        (*asker* (list "the init form of " name)))
+    (with-seclusion ("It cannot command robots, start plans or change things, since init forms are ~
+                      evaluated before the robots of the run may act.")
+      (with-random-state ((dice-for-initial-value name world))
+        (handler-bind ((error (lambda (condition) (reject-init-form name condition))))
+          (funcall function))))))
+
 (defun initial-value (name world)
   "Return the value of the init form of the run variable NAME in the run of WORLD."
   (when (member name *variables-being-initialized*)
-    (reject-use "The init form of the run variable ~(~A~) uses ~:*~(~A~) itself. Use another form."
-                name))
-  (let* ((definition (definition-of-variable name))
-         (value (let ((*variables-being-initialized* (cons name *variables-being-initialized*))
-                      (*asker* (list "the init form of " name)))
-                  (with-seclusion
-                    (with-random-state ((dice-for-initial-value name world))
-                      (funcall (variable-definition-function definition)))))))
+    (reject-use "It uses ~(~A~), which has no value yet" name))
+  (let ((value (value-of-init-form name world)))
     (check-run-variable-value 'define-run-variable name value world)
     (copied-value value)))
 
@@ -173,6 +192,12 @@ error in an init form is signalled when the variable is first used, since many r
            (reject-clause title name
                           (format nil "a name that is free; ~A ~A" name
                                   (variable-name-trouble name))))
+          ((and (boundp name) (not (eq :special (variable-kind name))))
+           (reject-clause title name
+                          (format nil "a name without a value. Code that was compiled before has ~
+                                       set ~(~A~): evaluate (makunbound '~:*~(~A~)), then this ~
+                                       definition, and compile that code again"
+                                  name)))
           ((eq :special (variable-kind name))
            (reject-clause title name
                           (format nil "a name that is no variable yet. ~(~A~) is a special ~

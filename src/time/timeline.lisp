@@ -18,11 +18,13 @@
 ;;; Secluded code can change only the runs that it has begun itself.
 
 (defvar *seclusion* nil
-  "A symbol that marks the secluded code that this thread runs, and its timelines; or NIL.")
+  "A symbol that marks the secluded code that this thread runs, and its timelines; or NIL. Its name
+says why the code cannot change other runs, and what to do.")
 
-(defmacro with-seclusion (&body body)
-  "Run BODY as secluded code: BODY can change and command only runs that have begun in BODY."
-  `(let ((*seclusion* (gensym "SECLUSION"))) ,@body))
+(defmacro with-seclusion ((reason) &body body)
+  "Run BODY as secluded code: BODY can change and command only runs that have begun in BODY. REASON,
+a format control, is the text of the error that other changes and commands signal."
+  `(let ((*seclusion* (make-symbol (format nil ,reason)))) ,@body))
 
 (define-kind (timeline :constructor (make-timeline (name &optional (custody (make-custody)))))
     "The events of a run, and the requests that wait to be performed in it."
@@ -142,9 +144,7 @@ requests that they made are repeated, too."
 (defun check-not-secluded (object)
   "Signal MISUSE if the current code is secluded, and the run of OBJECT did not begin in that code."
   (when (and *seclusion* (not (eq *seclusion* (timeline-seclusion (timeline-of object)))))
-    (reject-use "This object belongs to another run than the one that was made for this code, and ~
-                 cannot be commanded or changed here. To get the objects of this run, use names of ~
-                 robots, and FIND-THING.")))
+    (reject-use "~A" (symbol-name *seclusion*))))
 
 (defun check-own-run (timeline)
   "Signal MISUSE if the current code must not change the run of TIMELINE, because the code is

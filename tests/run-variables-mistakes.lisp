@@ -1,0 +1,98 @@
+;;;; run-variables-mistakes.lisp -- run variables: wrong init forms, wrong names, wrong order.
+
+(in-package :ars-magna.tests)
+
+(def-suite* run-variables-mistakes :in ars-magna)
+
+(run:define-run-variable *wrong-init* (make-hash-table))
+(run:define-run-variable *selfish* (1+ *selfish*))
+(run:define-run-variable *broken* (error "Broken."))
+(run:define-run-variable *leaning* (list *broken*))
+(run:define-run-variable *mover* (progn (run:set-seed 3) 1))
+(run:define-run-variable *driver* (command:robot-turn (robot:find-robot 'otter) 1))
+(run:define-run-variable *planner* (driver:begin-plan (rpl:interp-lambda () (rpl:wait-time 1))))
+(run:define-run-variable *symbol-set* 1)
+
+(test init-form.that-is-wrong-says-so-at-the-first-use
+  (in-lagoon ()
+    (is (search "*wrong-init* is #<HASH-TABLE" (text-of-error (lambda () *wrong-init*))))
+    (is (search "of the run variable *selfish* failed: It uses *selfish*, which has no value yet."
+                (text-of-error (lambda () *selfish*))))
+    (is (search "of the run variable *broken* failed: Broken. Correct the form"
+                (text-of-error (lambda () *broken*))))
+    (is (search "of the run variable *leaning* failed: The init form of the run variable *broken* "
+                (text-of-error (lambda () *leaning*))))
+    (setf *wrong-init* 3)
+    (is (= 3 *wrong-init*))))
+
+(test init-form.acts-before-the-robots-of-the-run-may-act
+  (run:with-simulation (otter)
+    (loop for (name . function) in `(("*mover*" . ,(lambda () *mover*))
+                                     ("*driver*" . ,(lambda () *driver*))
+                                     ("*planner*" . ,(lambda () *planner*)))
+          do (is-true (has-words-p (text-of-error function) name "It cannot command robots"
+                                   "before the robots of the run may act. Correct the form")))))
+
+(test init-form.that-was-wrong-is-corrected-in-the-run
+  (base:with-own-definitions ()
+    (in-lagoon ()
+      (eval '(run:define-run-variable *brief* (error "Not yet.")))
+      (is (search "failed: Not yet." (text-of-error (lambda () (eval '*brief*)))))
+      (eval '(run:define-run-variable *brief* 5))
+      (is (= 5 (eval '*brief*))))))
+
+(test define-run-variable.refuses-other-variables
+  (loop for (form text) in '(((run:define-run-variable *tallies* 0) "(unintern '*tallies*)")
+                             ((run:define-run-variable pi 0) "belongs to COMMON-LISP")
+                             ((run:define-run-variable :key 0) "a symbol as the name")
+                             ((run:define-run-variable everywhere-later 0) "is a symbol macro")
+                             ((run:define-run-variable *new-tally*) "name init")
+                             ((run:define-run-variable *new-tally* 0 :doc) "[string]"))
+        do (is (search text (text-of-error (lambda () (eval form)))))))
+
+(defun text-of-lisp-error (function)
+  (handler-case (progn (funcall function) nil)
+    (error (condition) (base:text-of-condition condition))))
+
+(test defvar.of-a-run-variable-says-what-to-do
+  (dolist (form '((defvar *catch* 1) (defparameter *catch* 1)))
+    (is-true (has-words-p (text-of-lisp-error (lambda () (eval form)))
+                          "*catch* is a run variable" "remove its DEFVAR or DEFPARAMETER"
+                          "(undefine 'run-variable '*catch*)"))))
+
+(test set.of-the-symbol-is-seen-at-the-next-use
+  (in-lagoon ()
+    (unwind-protect
+         (progn
+           (setf *symbol-set* 2)
+           (set '*symbol-set* 3)
+           (dolist (use (list (lambda () *symbol-set*) (lambda () (incf *symbol-set*))))
+             (is (search "(makunbound '*symbol-set*), use SETF" (text-of-error use)))))
+      (makunbound '*symbol-set*))
+    (is (= 2 *symbol-set*))))
+
+(defun compile-without-warnings (form)
+  (let ((*error-output* (make-broadcast-stream)))
+    (handler-bind ((warning #'muffle-warning)) (compile nil form))))
+
+(test code.compiled-before-the-definition-is-told-so
+  (base:with-own-definitions ()
+    (let ((use (compile-without-warnings '(lambda () (incf *late*)))))
+      (eval '(run:define-run-variable *late* 1))
+      (in-lagoon ()
+        (is (search "Define a run variable before the code that uses it"
+                    (text-of-lisp-error use))))))
+  (base:with-own-definitions ()
+    (funcall (compile-without-warnings '(lambda () (setq *later* 1))))
+    (unwind-protect
+         (is (search "evaluate (makunbound '*later*)"
+                     (text-of-error (lambda () (eval '(run:define-run-variable *later* 1))))))
+      (makunbound '*later*))))
+
+(test define-run-variable.of-a-name-of-the-simulator-says-so
+  (flet ((text (name)
+           (princ-to-string
+            (nth-value 1 (ignore-errors
+                          (macroexpand-1 `(run:define-run-variable ,name 1)))))))
+    (is-false (has-words-p (text 'base:motion-noise*) "DEFVAR") "~A" (text 'base:motion-noise*))
+    (is-true (has-words-p (text 'base:motion-noise*) "a name that is free"))))
