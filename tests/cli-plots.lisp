@@ -39,8 +39,8 @@ STEP passes ticks."
                            "(drive)" "step 20"))))
 
 (run:define-run-variable ars-user::*plotted-score* 4
-  "The points that the robot has, with a remark that is much too long for the title of a chart, since
-it goes on and on until nobody reads it any more.")
+  "The points that the robot has, with a remark that is much too long for the title of a chart,
+since it goes on and on until nobody reads it any more.")
 (run:defmeasure ars-user::plotted-doubled "Twice the score." (* 2 ars-user::*plotted-score*))
 
 (test plot.takes-run-variables-and-measures

@@ -185,6 +185,26 @@
   (is (equal '(0 0) (ends-of-thoughts :free 3/2 3/2)))
   (is (equal '(0 0) (ends-of-thoughts :real 3/2 3/2))))
 
+(test fractions.of-all-charges-add-up
+  (run:with-simulation (ponderer :thinking :charged)
+    (is (equal '(0 0 1 1 3)
+               (values (driver:run-plan
+                        (rpl:interp-lambda ()
+                          (let ((times '()))
+                            (rpl:think 1/4)
+                            (push (rpl:plan-time) times)
+                            (rpl:with-charge (1/4) nil)
+                            (push (rpl:plan-time) times)
+                            (rpl:charge-ticks 1/2)
+                            (rpl:wait-time 0)
+                            (push (rpl:plan-time) times)
+                            (rpl:with-charge (3/4) nil)
+                            (push (rpl:plan-time) times)
+                            (rpl:with-charge (5/4) nil)
+                            (push (rpl:plan-time) times)
+                            (reverse times)))))))
+    (is (= 0 (robot:robot-unpaid-thinking ponderer)))))
+
 (test fractions.of-seconds-add-up
   (run:with-simulation (ponderer :thinking :charged)
     (is (equal '(0 0 0 1)

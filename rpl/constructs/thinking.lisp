@@ -92,9 +92,9 @@ other tasks stop meanwhile. The body of the WITH-CHARGE has ended with RESULT or
   "Run BODY in a plan, as a separate task, at the price of SPAN ticks, or seconds if UNIT is
 :seconds. Return the first value of BODY. If thinking is charged, the steps of BODY do not count.
 WITH-CHARGE then ends SPAN after the start of BODY, or with BODY if BODY ends later. If ALONE is
-true, other tasks stop after BODY until the price is paid. Fractions of a tick add up as for THINK. If
-thinking is not charged, just run BODY. A task that evaporates does not wait for the rest of SPAN. Signals WRONG-ARGUMENT
-(manual 1.2)."
+true, other tasks stop after BODY until the price is paid. Fractions of a tick add up as for
+THINK. If thinking is not charged, just run BODY. A task that evaporates does not wait for the rest
+of SPAN. Signals WRONG-ARGUMENT (manual 1.2)."
   (:arguments span alone)
   (:parts (span function (price-lambda 'with-charge span unit form scope))
           (alone function (value-lambda alone scope))

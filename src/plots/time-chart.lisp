@@ -5,9 +5,9 @@
 (export '(time-chart time-chart-series collect-time-charts draw-time-charts
           sample-range-at sample-text value-and-unit-text time-charts-svg +time-chart-height+))
 
-;;; A chart has a line with the name, the description, the last value and the unit; below it is the curve between two
-;;; axes. All charts share the ticks of the axis across. Charts are collected before they are drawn,
-;;; because a curve may grow while it is drawn.
+;;; A chart has a line with the name, the description, the last value and the unit; below it is the
+;;; curve between two axes. All charts share the ticks of the axis across. Charts are collected
+;;; before they are drawn, because a curve may grow while it is drawn.
 
 (defconstant +time-chart-height+ 96 "The height of the chart of a curve, in pixels.")
 (defconstant +time-chart-title-height+ 19 "The height of the title of a chart, in pixels.")

@@ -58,8 +58,8 @@
 
 (defun values-expected-text (value)
   "Return a text about what a run variable or measure can have instead of VALUE."
-  (format nil "plain data (numbers, symbols, characters, strings, lists, simple vectors), or things ~
-               and robots of the current run: ~A"
+  (format nil "plain data (numbers, symbols, characters, strings, lists, simple vectors), or ~
+               things and robots of the current run: ~A"
           (typecase value
             ((or thing robot) "(counterpart OBJECT) returns the object of the current run")
             (hash-table "a list of lists (key value) can replace a table")
@@ -89,8 +89,8 @@
 
 (defun reject-init-form (name condition)
   "Signal MISUSE: the init form of the run variable NAME has signalled CONDITION."
-  (reject-use "The init form of the run variable ~(~A~) failed: ~A~:[~; Correct the form and define ~
-               the variable again, or set it before it is read.~]"
+  (reject-use "The init form of the run variable ~(~A~) failed: ~A~:[~; Correct the form and ~
+               define the variable again, or set it before it is read.~]"
               name (add-full-stop (one-line-text condition))
               ;; Else CONDITION is about the init form of another variable, and says so.
               (eq name (first *variables-being-initialized*))))
