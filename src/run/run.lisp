@@ -204,7 +204,8 @@ WRONG-ARGUMENT, which names OPERATOR, for other objects."
   (values))
 
 (defun add-participant (participant simulation)
-  "Add PARTICIPANT to SIMULATION. Return PARTICIPANT."
+  "Add PARTICIPANT to SIMULATION. Return PARTICIPANT. Signals MISUSE in code secluded from it."
+  (check-not-secluded simulation)
   (asking (simulation)
     (setf (simulation-participants simulation)
           (append (simulation-participants simulation) (list participant))))
