@@ -52,7 +52,7 @@ Each third one rolls DICE once more."
                 (when (zerop (mod (first kicks) 3))
                   (base:roll (world:world-dice world :kickers)))))
       (crowd world 6000 (base:make-dice 3) :kickers '(hop))
-      (run-world world 4)
+      (run-without-messages world 4)
       (is (equal (foretold-kicks 6000 4 (world::group-scale
                                          (first (world::world-kicker-groups world)))
                                  dice)

@@ -134,7 +134,7 @@ index END. Return the index of the first success for which nothing was read."
   (let* ((row (group-row group))
          (outlook (or (group-outlook group) (setf (group-outlook group) (make-outlook))))
          (gaps (outlook-gaps outlook))
-         (index (group-skip group)) (batch (make-array +batch-size+))
+         (index (group-skip group)) (batch (make-array +moves-per-batch+))
          (ahead (draw-next-gaps outlook index end (group-scale group) dice)))
     (declare (dynamic-extent batch) (type (unsigned-byte 50) index) (type outlook outlook))
     (dotimes (i (outlook-count outlook))
