@@ -14,7 +14,7 @@
                         (not (eq package (find-package :ars-magna.tests)))))
                  (list-all-packages)))
 
-(defun settable-variables ()
+(defun settable-variables-now ()
   "Return the variables that others than their own layer may set, and those that a run binds."
   (append '(definitions::*noise-before-cleaning* cli::*prompt-robot* cli::*aliases*)
           run:*simulation-variables*
@@ -23,6 +23,12 @@
                              when (and (eq package (symbol-package symbol))
                                        (eq :special (sb-cltl2:variable-information symbol)))
                                collect symbol))))
+
+(defvar *settable-variables* '() "What SETTABLE-VARIABLES-NOW has returned.")
+
+(defun settable-variables ()
+  "Return SETTABLE-VARIABLES-NOW, which is looked for once."
+  (or *settable-variables* (setf *settable-variables* (settable-variables-now))))
 
 (defun call-keeping-variables (function)
   "Call FUNCTION and set back the variables that it has set."

@@ -287,6 +287,7 @@ do not sound alike. (SISE may be a misspelling of SIZE, but SIDE is another word
 two if both are long. In short names, and at the beginning, the two letters must sound alike."
   (let* ((a (string a)) (b (string b)) (shorter (min (length a) (length b))))
     (and (plusp shorter)
+         (<= (abs (- (length a) (length b))) 2)
          (or (similar-letters-p (char a 0) (char b 0))
              (and (/= (length a) (length b)) (<= 3 shorter)))
          (<= 1 (edit-distance a b) (if (<= 8 shorter) 2 1))

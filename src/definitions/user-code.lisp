@@ -119,10 +119,9 @@ thread is loading, or NIL. Can be set" :writable :export)
 (defun report-user-error (condition origin)
   "Queue an error message, and call the hooks, for CONDITION in ORIGIN, an item or list of items.
 For a RUN-IS-OVER-ERROR, a request of a finished run, queue only a message, not a USER-CODE-ERROR."
-  (let ((text (format nil "Error in ~A: ~A" (text-of-origin origin)
-                      (brief-condition-text condition)))
-        (stuff (list* "Error in " (append (ensure-list origin)
-                                          (list ": " (brief-condition-text condition))))))
+  (let* ((error-text (brief-condition-text condition))
+         (text (format nil "Error in ~A: ~A" (text-of-origin origin) error-text))
+         (stuff `("Error in " ,@(ensure-list origin) ": " ,error-text)))
     (call-listeners *user-error-hooks* text)
     (if (typep condition 'run-is-over-error)
         (apply #'error-set stuff)

@@ -141,8 +141,12 @@ false if another world has become resident in its map."
 (defmethod value-to-restore ((simulation simulation))
   (latest-successor simulation))
 
+(defun run-so-far (world)
+  "Return the run of WORLD; NIL if it has none yet."
+  (and (world-timeline world) (timeline-run (world-timeline world))))
+
 (defmethod value-to-restore ((world world))
-  (let ((simulation (and (world-timeline world) (world-simulation world))))
+  (let ((simulation (run-so-far world)))
     (if simulation (simulation-world (latest-successor simulation)) world)))
 
 (defmethod redo-definition ((map map))
@@ -150,7 +154,7 @@ false if another world has become resident in its map."
   (when (map-resident map)
     (setf (map-resident map) (value-to-restore (map-resident map))))
   (let* ((world (map-resident map))
-         (simulation (and world (world-simulation world))))
+         (simulation (and world (run-so-far world))))
     (when world
       (dolist (robot (world-robots world)) (setf (robot-retired robot) nil)))
     (when (and simulation (simulation-over simulation))
