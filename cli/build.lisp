@@ -12,7 +12,7 @@
   (:use :cl)
   (:export #:configure #:show-progress #:print-missing-libraries #:print-window-libraries
            #:get-window-libraries #:load-project #:load-strictly
-           #:print-library-versions #:load-tests #:save-prompt #:save-window-prompt #:run-tests
+           #:print-library-versions #:load-tests #:save-prompt #:save-window-prompt #:save-tests
            #:record-sessions #:write-manual))
 
 (in-package :ars-magna.build)
@@ -298,17 +298,20 @@ and try again. If the second try fails, too, exit with status 2."
 
 ;;; The prompt.
 
-(defun save-prompt (&optional (system "ars-magna/cli"))
-  "Save a core that runs the prompt, with SYSTEM loaded, in the file named in ARS_MAGNA_CORE."
-  (load-project system)
+(defun save-core (main)
+  "Save this Lisp in the file named in ARS_MAGNA_CORE, as a core that calls MAIN when it starts."
   ;; Files in the core must not be compiled again under its user.
   (mapc #'asdf:register-immutable-system (asdf:already-loaded-systems))
   (uiop:call-image-dump-hook)
-  (uiop:symbol-call :ars-magna.cli :mark-process-as-own)
   ;; The core keeps the streams of this process.
   (when *progress-stream* (setf *error-output* (shiftf *progress-stream* nil)))
-  (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE")
-                            :toplevel (uiop:find-symbol* :main :ars-magna.cli)))
+  (sb-ext:save-lisp-and-die (path-in-environment "ARS_MAGNA_CORE") :toplevel main))
+
+(defun save-prompt (&optional (system "ars-magna/cli"))
+  "Save a core that runs the prompt, with SYSTEM loaded, in the file named in ARS_MAGNA_CORE."
+  (load-project system)
+  (uiop:symbol-call :ars-magna.cli :mark-process-as-own)
+  (save-core (uiop:find-symbol* :main :ars-magna.cli)))
 
 (defun save-window-prompt ()
   "Save a core of the prompt with McCLIM loaded, in the file named in ARS_MAGNA_CORE."
@@ -325,10 +328,22 @@ and try again. If the second try fails, too, exit with status 2."
 
 ;;; The tests.
 
-(defun run-tests (suites &optional seed)
-  "Run SUITES, or all suites; shuffle them if there is a SEED. Exit with status 1 if a check fails."
+(defun run-tests ()
+  "Run the tests: the first of this process's arguments is the seed, or nil; the others are names of
+suites. Exit with status 1 if a check fails. The argument --probe only tests whether Lisp starts."
+  (uiop:call-image-restore-hook)
+  (configure)
+  (destructuring-bind (seed &rest suites) (rest (uiop:raw-command-line-arguments))
+    (when (string= "--probe" seed) (uiop:quit 0))
+    (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell
+                                     suites (parse-integer seed :junk-allowed t))
+                   0
+                   1))))
+
+(defun save-tests ()
+  "Save a core that runs the tests in the file named in ARS_MAGNA_CORE."
   (load-tests)
-  (uiop:quit (if (uiop:symbol-call :ars-magna.tests :run-from-shell suites seed) 0 1)))
+  (save-core #'run-tests))
 
 (defun record-sessions (names)
   "Play the sessions NAMES of tests/newcomer, or all, and save their screens. Exit with status 1 if

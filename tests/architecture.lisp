@@ -1,4 +1,4 @@
-;;;; architecture.lisp -- rules for the sources: exports are documented, one file per library.
+;;;; architecture.lisp -- rules for the sources: sizes, one file per library, defined names.
 
 (in-package :ars-magna.tests)
 
@@ -28,14 +28,30 @@
                      (t (write-char (char-downcase (char text i)) out)
                         (incf i)))))))
 
+(defvar *code* (make-hash-table :test #'equal) "The code in files, by path; see CODE-IN.")
+
 (defun code-in (path)
-  (bare-code (base:read-file-into-string path)))
+  "Return the BARE-CODE of the file PATH, which is read once."
+  (or (gethash path *code*)
+      (setf (gethash path *code*) (bare-code (base:read-file-into-string path)))))
+
+(defun place-in-code (word code &optional (start 0))
+  "Return where the string WORD begins in CODE, a value of CODE-IN, from START on; or NIL."
+  (let* ((word (coerce word '(simple-array character (*)))) (end (length word)))
+    (declare (optimize speed (sb-ext:inhibit-warnings 3)) (type fixnum start)
+             (type (simple-array character (*)) code word))
+    (loop for place = (position (char word 0) code :start start)
+          while (and place (<= (+ place end) (length code)))
+          when (loop for i from 1 below end
+                     always (char= (char word i) (char code (+ place i))))
+            return place
+          do (setf start (1+ place)))))
 
 (defun files-mentioning (words directories)
   "Return the names of the files under DIRECTORIES whose code has one of the strings WORDS."
   (loop for path in (apply #'lisp-files directories)
         for code = (code-in path)
-        when (some (lambda (word) (search word code)) words)
+        when (some (lambda (word) (place-in-code word code)) words)
           collect (enough-namestring path (project-file ""))))
 
 (test code.is-what-is-left-of-a-file
@@ -85,7 +101,7 @@
 
 (defun names-fiveam-p (code)
   "True if CODE names the library FiveAM; packages of ours, ars-...fiveam, are called after it."
-  (loop for place = (search "fiveam" code) then (search "fiveam" code :start2 (1+ place))
+  (loop for place = (place-in-code "fiveam" code) then (place-in-code "fiveam" code (1+ place))
         while place
         thereis (not (member (char code (1- place)) '(#\. #\-)))))
 
@@ -232,7 +248,7 @@ describes a slot."
 
 (defun powers-of-floats (code)
   "Return the calls of EXPT in CODE, but for powers of the integers 2 and 10, and for squares."
-  (loop for place = (search "(expt " code) then (search "(expt " code :start2 (1+ place))
+  (loop for place = (place-in-code "(expt " code) then (place-in-code "(expt " code (1+ place))
         while place
         for (base exponent) = (let ((*read-eval* nil) (end (min (length code) (+ place 200))))
                                 (rest (ignore-errors
@@ -245,8 +261,8 @@ describes a slot."
              (loop for path in (lisp-files "src/" "rpl/" "worlds/")
                    for code = (code-in path)
                    when (or (some (lambda (call)
-                                    (loop for place = (search call code)
-                                            then (search call code :start2 (1+ place))
+                                    (loop for place = (place-in-code call code)
+                                            then (place-in-code call code (1+ place))
                                           while place
                                           thereis (not (binds-elementary-p code place))))
                                   *elementary-calls*)
@@ -285,8 +301,9 @@ describes a slot."
         collect (subseq text (+ start (length prefix)) end)))
 
 (test scripts.call-what-build-lisp-exports
-  (let ((names (loop for file in '("cli/ars-magna" "cli/setup.sh" "tests/run" "worlds/figures"
-                                   "tests/newcomer/record" "tests/benchmarks/run"
+  (let ((names (loop for file in '("cli/ars-magna" "cli/setup.sh" "cli/cores.sh" "tests/run"
+                                   "worlds/figures" "tests/newcomer/record"
+                                   "tests/benchmarks/run"
                                    "tests/benchmarks/peers/run")
                      append (names-after "ars-magna.build:"
                                          (base:read-file-into-string (project-file file))))))
@@ -296,100 +313,30 @@ describes a slot."
         (is (eq :external (nth-value 1 (find-symbol (string-upcase name) :ars-magna.build)))
             "~A is not exported" name)))))
 
-;;; Packages.
+;;; Undefined names. The compiler does not warn of those in code that is *HOT*.
 
-(defun project-packages ()
-  "Return the layers' packages and the faces that there are."
-  (remove-if-not (lambda (package)
-                   (let ((name (package-name package)))
-                     (or (member name '("ARS" "NISP" "ARS-WORLDS") :test #'string=)
-                         (and (eql 0 (search "ARS-MAGNA." name))
-                              (string/= name "ARS-MAGNA.TESTS")
-                              (string/= name "ARS-MAGNA.BUILD")))))
-                 (list-all-packages)))
+(defun names-in-use (package test)
+  "Return the symbols of PACKAGE itself for which TEST is true."
+  (remove-if-not (lambda (symbol) (and (eq package (symbol-package symbol)) (funcall test symbol)))
+                 (names-in package)))
 
-(defun external-symbols (package)
-  (sort (loop for symbol being the external-symbols of package collect symbol)
-        #'string<))
+(defun undefined-variable-p (symbol)
+  "True if SYMBOL is written like a special variable or constant, and is none."
+  (let* ((name (symbol-name symbol)) (first (char name 0)))
+    (and (< 2 (length name)) (find first "+*") (char= first (char name (1- (length name))))
+         (not (boundp symbol))
+         (null (sb-cltl2:variable-information symbol)))))
 
-(defun ours-p (symbol)
-  (let ((package (symbol-package symbol)))
-    (and package (member package (project-packages)))))
+(defun undefined-function-p (symbol)
+  "True if code calls SYMBOL, which is not defined."
+  (and (sb-int:find-fdefn symbol) (not (fboundp symbol))))
 
-(defun undocumented-as (symbol)
-  "Return as what SYMBOL is bound but not documented, a list."
-  (loop for (kind bound-p) in `((function ,(fboundp symbol))
-                                (variable ,(and (boundp symbol) (not (keywordp symbol))))
-                                (type ,(sb-ext:valid-type-specifier-p symbol)))
-        when (and bound-p (null (documentation symbol kind)))
-          collect kind))
+(test names.that-code-uses-are-defined
+  (dolist (package (layers))
+    (is (equal '() (names-in-use package #'undefined-variable-p)))
+    (is (equal '() (names-in-use package #'undefined-function-p)))))
 
-(test exports.are-documented
-  (dolist (package (project-packages))
-    (dolist (symbol (remove-if-not #'ours-p (external-symbols package)))
-      (let ((kinds (undocumented-as symbol)))
-        (is (null kinds) "~A:~A has no documentation as ~{~(~A~)~^, ~}"
-            (package-name package) symbol kinds)))))
-
-(test packages.say-what-they-are
-  (dolist (package (project-packages))
-    (is (plusp (length (documentation package t))) "~A" (package-name package))))
-
-;;; What users see.
-
-(defun documentations (symbol)
-  "Return all that is said of SYMBOL, a list of strings."
-  (loop for kind in '(function variable type)
-        for text = (documentation symbol kind)
-        when text collect text))
-
-(defun says-addition-p (text)
-  (let ((sentence (format nil "~%An addition to the manual.")))
-    (eql (search sentence text) (- (length text) (length sentence)))))
-
-(defun face-package (face)
-  "Return the package FACE; in here :NISP is a nickname of a layer."
-  (find (string face) (list-all-packages) :key #'package-name :test #'string=))
-
-(test public.is-what-is-marked
-  (dolist (face '(:ars :nisp))
-    (is (null (set-exclusive-or (base:public-symbols face)
-                                (external-symbols (face-package face))
-                                :test #'string=)))))
-
-(defun users-symbol (symbol)
-  "Return what users see of SYMBOL, which a layer exports."
-  (find-symbol (symbol-name symbol)
-               (face-package (first (basics::mark-faces (basics::find-public-mark symbol))))))
-
-(test public.readers-only-read
-  "A user who could set one would change a run without an entry in its journal."
-  (let ((settable '()) (readers 0))
-    (dolist (symbol (append (base:public-symbols :ars) (base:public-symbols :nisp)))
-      (let ((shown (users-symbol symbol)))
-        (cond ((not (fboundp `(setf ,shown))))
-              ((eq shown symbol) (push symbol settable))
-              (t (incf readers)
-                 (is (eq (fdefinition symbol) (fdefinition shown)))
-                 (signals base:misuse (funcall (fdefinition `(setf ,shown)) 1 2))))))
-    (is (< 50 readers))
-    (is (null (set-exclusive-or settable
-                                '("PARAMETER-VALUE" "GET-ATTRIBUTE" "FLUENT-VALUE" "VREF"
-                                  "PT-X" "PT-Y" "INTERVAL-MIN" "INTERVAL-MAX"
-                                  "PT-INTERVAL-X" "PT-INTERVAL-Y")
-                                :test #'string=)))))
-
-(test public.is-told-apart-from-the-manual
-  (dolist (symbol (append (base:public-symbols :ars) (base:public-symbols :nisp)))
-    (let ((texts (documentations symbol)))
-      (if (base:addition-p symbol)
-          (is (every #'says-addition-p texts) "~S does not say that the manual lacks it" symbol)
-          (is (or (null texts) (some (lambda (text) (search "anual" text)) texts))
-              "~S does not cite the manual" symbol)))))
-
-(test marks.export
-  (let ((symbol (intern "NEWLY-MARKED" :ars-magna.tests)) (marks basics::*public-marks*))
-    (unwind-protect (progn (let ((base:*loading-simulator-p* t)) (eval `(base:addition ,symbol)))
-                           (is (member symbol (external-symbols (find-package :ars-magna.tests)))))
-      (setf basics::*public-marks* marks)
-      (unintern symbol :ars-magna.tests))))
+(test names.that-are-not-defined-are-found
+  (compile nil '(lambda () (declare #.host:*hot*) (doze-for-ever *hour-of-doom*)))
+  (is-true (undefined-function-p 'doze-for-ever))
+  (is-true (undefined-variable-p '*hour-of-doom*)))

@@ -59,7 +59,7 @@
                       "~A...~A" start end)))
       (line-p "file /" "/alexandria.asd")
       (line-p "file /" "/package.lisp")
-      (line-p "file /" (file-namestring sb-ext:*core-pathname*))
+      (line-p "file /" (file-namestring *plain-core*))
       (line-p "name /alexandria.asd" "")
       (line-p "tree /" "/common-lisp/")
       (line-p "directory /" "/systems/"))

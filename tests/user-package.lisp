@@ -107,10 +107,13 @@
                   (ars-magna.world:find-attribute :lit nil))))"
   "Prints lists of what there is besides the manual's world.")
 
+(defparameter *plain-core* sb-ext:*core-pathname*
+  "The core of SBCL itself, in which the tests were loaded. They run in another.")
+
 (defun printed-in-child (system form)
   "Return what FORM, a string, prints in a fresh Lisp that has loaded SYSTEM."
   (uiop:run-program
-   (list (namestring sb-ext:*runtime-pathname*) "--core" (namestring sb-ext:*core-pathname*)
+   (list (namestring sb-ext:*runtime-pathname*) "--core" (namestring *plain-core*)
          "--noinform" "--no-sysinit" "--no-userinit" "--non-interactive"
          "--load" (uiop:native-namestring (project-file "cli/build.lisp"))
          "--eval" (format nil "(let ((*standard-output* (make-broadcast-stream)))
