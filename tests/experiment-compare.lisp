@@ -247,7 +247,7 @@
         differences))))
 
 (test compare.tells-a-plain-difference-among-hundreds-of-tests
-  (let ((differences (measured-differences 600 1000 22)))
+  (let ((differences (measured-differences 200 1000 22)))
     (is (< (experiment:paired-adjusted-p (first differences)) .001))
     (is (notany #'ars-magna.experiment::significant-p (rest differences)))))
 

@@ -9,14 +9,24 @@
 (defun markdown-program-p ()
   (and (base:run-command "cmark-gfm" '("--version")) t))
 
-(defun call-with-manual (function)
-  "Call FUNCTION with the directory of a manual that has just been written."
-  (if (markdown-program-p)
+(defvar *manual* nil "The directory of the manual that tests read, or NIL before it is written.")
+
+(defun delete-manual ()
+  (uiop:delete-directory-tree *manual* :validate t :if-does-not-exist :ignore))
+
+(defun written-manual ()
+  "Return the directory of the manual, which is written once and deleted when this process ends."
+  (or *manual*
       (uiop:with-temporary-file (:pathname place)
         (let ((directory (uiop:ensure-directory-pathname (format nil "~A-manual" place))))
-          (unwind-protect (progn (manual:write-manual (base:native-name directory))
-                                 (funcall function directory))
-            (uiop:delete-directory-tree directory :validate t :if-does-not-exist :ignore))))
+          (manual:write-manual (base:native-name directory))
+          (pushnew 'delete-manual sb-ext:*exit-hooks*)
+          (setf *manual* directory)))))
+
+(defun call-with-manual (function)
+  "Call FUNCTION with the directory of the manual, which it does not change."
+  (if (markdown-program-p)
+      (funcall function (written-manual))
       (skip "There is no cmark-gfm: no manual is written.")))
 
 (defmacro with-manual ((directory) &body body)

@@ -30,14 +30,15 @@
          (width (chart-number "width" page)) (height (chart-number "height" page))
          (texts (chart-elements "text" chart)))
     (loop for (text . others) on texts
-          for box = (text-box text)
+          for (box . other-boxes) on (mapcar #'text-box texts)
           unless (and (<= 0 (first box)) (<= 0 (second box)) (<= (third box) width)
                       (<= (fourth box) height))
             collect (list :cut (chart-words text))
           unless (<= 11 (chart-number "font-size" text))
             collect (list :small (chart-words text))
           append (loop for other in others
-                       when (boxes-overlap-p box (text-box other))
+                       for other-box in other-boxes
+                       when (boxes-overlap-p box other-box)
                          collect (list :overlap (chart-words text) (chart-words other))))))
 
 (defparameter *long*

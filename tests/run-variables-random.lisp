@@ -9,7 +9,7 @@
 ;;; of commands in progress are not called after a rewind, nor plans in a loaded run; so there the
 ;;; states agree only at first, and then with those of another copy.
 
-(defconstant +random-variable-runs+ 500)
+(defconstant +random-variable-runs+ 250)
 
 (defvar *deeds-dice* nil)
 (defvar *events-p* nil "True if events are scheduled. Such runs are not saved.")
