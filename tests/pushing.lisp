@@ -34,7 +34,7 @@
     (is (eq nil (push-code pusher 'east)))
     (is (eq nil (push-code pusher :east)))
     (is (equal '(10.5d0 5.75d0) (place-of 'next)))
-    (is (eq :push-blocked (push-code pusher 'east)))
+    (is (eq :push-stuck (push-code pusher 'east)))
     (is (equal '(9.25d0 5.5d0) (place-of 'near)) "nothing moves if the row cannot")
     (is (within-p 8.5 (robot:robot-x pusher)))))
 
@@ -60,13 +60,13 @@
 
 (test push.moves-no-doors-and-no-robots
   (run:with-simulation (pusher :clean t)
-    (is (eq :push-blocked (push-code pusher 'south)))
+    (is (eq :push-stuck (push-code pusher 'south)))
     (world:move-thing (world:find-thing 'south) 9.5 9.5)
     (is (eq nil (push-code pusher 'south)))
     (is (eq :robot-blocked (push-code pusher 'south)))
     (is (equal '(5.5d0 7.5d0) (place-of 'door))))
   (run:with-simulation ((pusher bystander) :clean t)
-    (is (eq :push-blocked (push-code pusher 'east)))
+    (is (eq :push-stuck (push-code pusher 'east)))
     (world:move-thing (world:find-thing 'near) 9.5 9.5)
     (is (eq nil (push-code pusher 'east)))
     (is (eq :robot-blocked (push-code pusher 'east)))))

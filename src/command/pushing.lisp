@@ -28,7 +28,7 @@ wall, a door or another robot is behind it."
   (destructuring-bind (columns rows) (rest (find-step-direction direction))
     (multiple-value-bind (row stuck) (row-ahead robot columns rows)
       (cond ((null row) nil)
-            (stuck :push-blocked)
+            (stuck :push-stuck)
             ((> (reduce #'+ row :key #'thing-total-weight) push-strength*) :too-heavy)
             (t (dolist (thing row)
                  (move-thing thing (+ (thing-x thing) columns) (+ (thing-y thing) rows))))))))
@@ -54,7 +54,7 @@ wall, a door or another robot is behind it."
      (:errors (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0")
               (:too-slow "Robot cannot turn and drive a cell in the time of a step")
-              (:push-blocked "Robot cannot push: a wall, a door or a robot is behind what it pushes"
+              (:push-stuck "Robot cannot push: a wall, a door or a robot is behind what it pushes"
                "What the robot would push, one thing or a row, cannot slide on."
                "Push from another side.")
               (:too-heavy "Robot cannot push: what is in its way is too heavy"
