@@ -154,7 +154,7 @@
     (let ((rows (window::parameter-rows (open-panel window 1180 820))))
       (is (= (length (definitions:all-parameters)) (count-if-not #'stringp rows)))
       (is (equal '("Robot movement" "Cameras" "Sensor error" "Hands" "Storage bins" "Radio"
-                   "Time")
+                   "Rangefinders" "Time")
                  (remove-if-not #'stringp rows))))))
 
 (test parameters.a-step-is-a-line
@@ -182,6 +182,7 @@
     (is (equal '(1) (next 'scan-density* 3 -1)))
     (is (equal '(3) (next 'braking* 2 1)))
     (is (equal '(2) (next 'tick-quantum* 1 1)))
+    (is (equal '(1/10) (next 'prob-lose-message* 0d0 1)) "its default is 0")
     (is (null (next 'tick-quantum* 1 -1)))
     (is (null (next 'braking* 0 -1)))
     (is (null (next 'motion-noise* 0 -1)))
@@ -189,6 +190,11 @@
     (is (equal '(t) (next 'no-sensor-error* nil 1)))
     (is (null (next 'no-sensor-error* t 1)))
     (is (equal '(nil) (next 'no-sensor-error* t -1)))))
+
+(test parameters.steps-suit-any-number-of-the-users-own
+  (loop for (default type next) in '((0 real 1/10) (0 t 1/10) (-30 (real * 5) -20) (-1 integer 0))
+        for parameter = (definitions::make-parameter :symbol 'depth* :default default :type type)
+        do (is (equal (list next) (window::next-value parameter default 1)))))
 
 (test parameters.each-line-of-the-panel-sets-what-it-says
   (in-window (window robot)

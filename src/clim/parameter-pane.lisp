@@ -44,14 +44,23 @@
 
 (defun step-size (parameter)
   "Return the step by which the panel changes PARAMETER, a number: a power of ten that changes the
-first digit of the default, or the second digit if the first is 1. Ticks change by 1 at least."
-  (let* ((default (rationalize (parameter-default parameter)))
-         (power (power-of-ten-below default))
-         (step (if (< default (* 2 power)) (/ power 10) power)))
+first digit of the default, or the second digit if the first is 1; 1/10 if the default is 0. Ticks
+change by 1 at least."
+  (let* ((default (abs (rationalize (parameter-default parameter))))
+         (size (if (zerop default) 1 default))
+         (power (power-of-ten-below size))
+         (step (if (< size (* 2 power)) (/ power 10) power)))
     (if (or (string= "ticks" (parameter-unit parameter))
             (subtypep (parameter-type parameter) 'integer))
         (max 1 step)
         step)))
+
+(defun parameter-limits (parameter)
+  "Return the least and the greatest value that the panel gives PARAMETER, a number."
+  (let ((type (parameter-type parameter)))
+    (destructuring-bind (&optional least most) (and (consp type) (rest type))
+      (values (if (realp least) least (- +largest+))
+              (if (realp most) most +largest+)))))
 
 (defun next-value (parameter value direction)
   "Return the value one step from VALUE of PARAMETER, up if DIRECTION is 1 and down if it is -1.
@@ -60,10 +69,10 @@ Return NIL if VALUE is at the limit of PARAMETER. T is one step up from NIL."
          (and (eq (plusp direction) (not value)) (list (plusp direction))))
         ;; One that need not be a number is only typed.
         ((not (realp (parameter-default parameter))) nil)
-        (t (destructuring-bind (&optional least most) (rest (parameter-type parameter))
+        (t (multiple-value-bind (least most) (parameter-limits parameter)
              (let* ((step (step-size parameter))
                     (next (clamp (* step (+ direction (round (rational value) step)))
-                                 (or least (- +largest+)) (or most +largest+))))
+                                 least most)))
                (and (plusp (* direction (- next (rational value)))) (list next)))))))
 
 ;;; Lines.
