@@ -226,14 +226,21 @@ leads to both."
       (is (equal "pos 3 4" (window::subject-moving-line before "3" "4" window))))))
 
 (test pointing.offers-what-can-be-done-with-a-designator
-  "Track, and what is tracked, grasp."
+  "Track, as long as it has its colour if it has one, and what is tracked, grasp."
   (in-window (window robot)
-    (let ((number (robot:designator-number
-                   (robot:add-designator robot :denotation (world:find-thing "BOX#1")
-                                               :x 1 :y 0))))
-      (window::publish-snapshot (window::window-watcher window) (time:current-simulation))
-      (is (find (format nil "cam-track 0 ~D" number) (offered (painted-world window) 28 36)
-                :test #'search)))))
+    (flet ((lines (name)
+             (let ((designator (robot:add-designator
+                                robot :denotation (world:find-thing name) :x 1 :y 0)))
+               (publish-and-refresh window)
+               (lines-offered window (find (robot:designator-number designator)
+                                           (display:robot-image-designators
+                                            (window::window-robot window))
+                                           :key #'display:designator-image-number)))))
+      (world:make-new-thing 'ars-user::plain (list (robot:robot-world robot) 2.5 2.5)
+                            '((:size 1)))
+      (is (equal '("cam-track 0 0" "cam-track-matching 0 0 ((:color red))") (lines "BOX#1")))
+      (is (equal '("cam-track 0 1") (lines "PLAIN"))))
+    (is (find "cam-track 0 0" (offered (painted-world window) 28 36) :test #'search))))
 
 (test pointing.every-offer-is-a-line-of-the-prompt
   (in-window (window robot)

@@ -46,10 +46,15 @@ format string for the camera's number, and LINE is one for the number and ARGUME
         when (equal (subject-key image) (subject-key (designator-image-denotation designator)))
           collect (designator-image-number designator)))
 
+(defun color-text (image)
+  "Return the colour of the thing of IMAGE as the prompt can read it; NIL if there is none."
+  (let ((color (and (typep image 'thing-image)
+                    (assoc :color (thing-image-attributes image)))))
+    (and color (text-as-typed (second color)))))
+
 (defun appearance-text (image)
   "Return the looks of IMAGE's thing as a specification that the prompt can read."
-  (let ((color (assoc :color (thing-image-attributes image))))
-    (if color (format nil "((:color ~A))" (text-as-typed (second color))) "()")))
+  (format nil "(~@[(:color ~A)~])" (color-text image)))
 
 (defun next-to-robot-p (image window)
   "True if the thing of IMAGE is on the floor, or a robot's body, within reach of WINDOW's robot."
@@ -75,15 +80,25 @@ to the robot if that thing is there, and farther away otherwise."
         when (and track (member (designator-image-number track) numbers))
           collect (camera-image-index camera)))
 
-(defun start-tracking-offers (numbers window)
-  "Return menu entries to start tracking the designators with NUMBERS: for each designator, one
-entry for each camera that does not track it."
+(defun tracking-offers (number camera image)
+  "Return menu entries to track designator NUMBER with the camera of index CAMERA. The second entry,
+to compare looks, is only for a thing with a colour; IMAGE is its image."
+  (cons (list (format nil "Track designator ~D with camera ~D" number camera)
+              (format nil "cam-track ~D ~D" camera number))
+        (when (color-text image)
+          (list (list (format nil "Track it with camera ~D as long as it looks ~A" camera
+                              (color-text image))
+                      (format nil "cam-track-matching ~D ~D ~A" camera number
+                              (appearance-text image)))))))
+
+(defun start-tracking-offers (numbers image window)
+  "Return menu entries to start tracking the designators with NUMBERS, with each camera that does
+not track them. IMAGE is the image of the thing that they denote; for a place, something else."
   (loop for number in numbers
         append (loop for camera in (robot-image-cameras (window-robot window))
                      for index = (camera-image-index camera)
                      unless (member index (cameras-tracking (list number) window))
-                       collect (list (format nil "Track designator ~D with camera ~D" number index)
-                                     (format nil "cam-track ~D ~D" index number)))))
+                       append (tracking-offers number index image))))
 
 (defun approach-offer (camera)
   (list (format nil "Approach it, guided by camera ~D" camera) (format nil "goto-desig ~D" camera)))
@@ -156,7 +171,7 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
               (list (go-there-offer (thing-image-x image) (thing-image-y image))))
             (held-thing-offers image window)
             (search-offers image window)
-            (start-tracking-offers numbers window)
+            (start-tracking-offers numbers image window)
             (tracked-thing-offers numbers window :held-p (hand-image-holding image window))
             (inspection-offers (find-thing-form-text image)))))
 
@@ -171,7 +186,7 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
 (defmethod offers ((image designator-image) window)
   (let ((numbers (list (designator-image-number image)))
         (thing (designator-image-denotation image)))
-    (append (start-tracking-offers numbers window)
+    (append (start-tracking-offers numbers thing window)
             (tracked-thing-offers numbers window
                                   :held-p (and (typep thing 'thing-image)
                                                 (hand-image-holding thing window))))))
@@ -205,7 +220,7 @@ If the robot itself holds the thing (HELD-P), leave out approaching and grasping
   "Return the menu entries for BODY, the image of another robot's body, as a thing to see."
   (let ((numbers (designator-numbers-of body window)))
     (append (search-offers body window)
-            (start-tracking-offers numbers window)
+            (start-tracking-offers numbers body window)
             (loop for camera in (cameras-tracking numbers window)
                   collect (approach-offer camera)
                   collect (end-tracking-offer camera)))))
