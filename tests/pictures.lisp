@@ -126,9 +126,10 @@
       (is-true (has-words-p (display:text-map robot :layers '(:echo)) "~ sonar"))
       (is-true (has-words-p (documentation 'display:*picture-layers* 'variable)
                             ":SONAR *" "An addition to the manual."))
-      (is (equal '(:sonar :echo "SONAR or ECHO")
+      (is (equal '(:sonar :echo "SONAR or ECHO" "RANGES")
                  (list (display:picture-layer-name :echo) (display:text-layer-name :sonar)
-                       (display:layer-prompt-text :sonar)))))))
+                       (display:layer-prompt-text :sonar)
+                       (display:layer-prompt-text :ranges)))))))
 
 (test layers.what-they-note-changes-what-displays-show
   "A window draws anew where a note is another one."

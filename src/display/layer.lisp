@@ -130,4 +130,4 @@ the colour of the first robot."
 
 (defun layer-prompt-text (name)
   "Return a text with the one or two names that the prompt accepts for the layer NAME."
-  (format nil "~A~@[ or ~A~]" name (%layer-text-name (find-layer name))))
+  (format nil "~{~A~^ or ~}" (remove-duplicates (list name (text-layer-name name)))))
