@@ -52,7 +52,9 @@
     (is-true (has-words-p (complaint line) "is Lisp, in parentheses: (") "~A" line))
   (dolist (line '("begin-plan turn-once" "run-plan 'turn-once"))
     (is-true (has-words-p (complaint line) "PLAN name argument..." "(run-plan 'name") "~A" line))
-  (is (not (search "is Lisp" (complaint "xyzzy 1")))))
+  (is-true (has-words-p (complaint "*score*") "EVAL *SCORE* shows the value"))
+  (is (not (search "is Lisp" (complaint "xyzzy 1"))))
+  (is (not (search "EVAL" (complaint "*")))))
 
 ;;; Plans.
 

@@ -103,8 +103,15 @@ type the line command; else NIL."
   (let ((place (position #\( name)))
     (and place (plusp place) (line-command-advice (subseq name 0 place)))))
 
+(defun variable-advice (name)
+  "If NAME is written as a global variable, such as *SCORE*, return a sentence on how to see its
+value; else NIL."
+  (and (< 2 (length name)) (char= #\* (char name 0) (char name (1- (length name))))
+       (format nil "EVAL ~A shows the value of a variable." name)))
+
 (defun reject-unknown-command (name)
   (let ((hint (or (newcomer-hint name) (plan-advice name) (parameter-advice name) (call-advice name)
+                  (variable-advice name)
                   (and (public-function-named name)
                        (format nil "~A is Lisp, in parentheses: (~(~:*~A~) ...)." name)))))
     (reject-line "There is no command ~A.~@[ ~A~]~@[ Did you mean ~A?~] HELP lists all commands."
