@@ -185,6 +185,7 @@
   (rejected-clause x (:robots ars-worlds:dot) (:run t) (:each-tick x))
   (rejected-clause (:each-tick) (:robots ars-worlds:dot) (:run t) (:each-tick))
   (rejected-clause (tick 1) (:robots ars-worlds:dot) (:run t) (:each-tick (tick 1)))
+  (rejected-clause (score :mean) (:robots ars-worlds:dot) (:run t) (:measure (score :mean)))
   (rejected-clause (a 2) (:robots ars-worlds:dot) (:run t) (:each-tick (a 1) (a 2)))
   (rejected-clause (size 2) (:robots ars-worlds:dot) (:run size) (:vary (size 1 2))
     (:each-tick (size 2)))

@@ -86,3 +86,23 @@
                  (run:rewind (- 20 tick))
                  (run:run-ticks (- 20 tick))
                  (is (= digest (run:state-digest))))))))
+
+(world:defmap nooks (9 9)
+  (wall (3 3) (3 3) bricks 10) (wall (4 4) (4 4) bricks 10) (wall (7 7) (7 7) bricks 10)
+  (wall (8 6) (8 6) bricks 10)
+  (obj crate (4.5 3.5) ((:obsmove t)))
+  (obj cask (6.5 6.5) ((:obsmove t))))
+(robot:defrobot corner-pusher (nooks (3.5 4.5) 0))
+
+(test push.does-not-pass-between-barred-cells-at-a-corner
+  (run:with-simulation (corner-pusher :clean t)
+    (is (eq :robot-blocked (push-code corner-pusher 'north-east)))
+    (is (equal '(4.5d0 3.5d0) (place-of 'crate)) "what the robot cannot reach stays")
+    (robot:place-robot corner-pusher 5.5 7.5 0)
+    (robot:reset-odometer (robot:robot-main-odometer corner-pusher))
+    (is (eq nil (push-code corner-pusher :north-east)))
+    (is (equal '(7.5d0 5.5d0) (place-of 'cask)))
+    (world:move-thing (world:find-thing 'cask) 7.5 6.5)
+    (robot:place-robot corner-pusher 6.5 5.5 0)
+    (robot:reset-odometer (robot:robot-main-odometer corner-pusher))
+    (is (eq :push-stuck (push-code corner-pusher 'south-east)))))

@@ -96,3 +96,67 @@
                           (macroexpand-1 `(run:define-run-variable ,name 1)))))))
     (is-false (has-words-p (text 'base:motion-noise*) "DEFVAR") "~A" (text 'base:motion-noise*))
     (is-true (has-words-p (text 'base:motion-noise*) "a name that is free"))))
+
+;;; Definitions that change.
+
+(test run-variable.that-is-defined-otherwise-makes-replays-differ
+  (base:with-own-definitions ()
+    (eval '(run:define-run-variable *fee* 1))
+    (flet ((recorded ()
+             (in-lagoon (:journal t)
+               (run:run-ticks 1)
+               (eval '*fee*)
+               (run:journal-up-to-now time:*simulation*))))
+      (let ((journal (recorded)))
+        (eval '(run:define-run-variable *fee* 1 "The same form but for a docstring."))
+        (signals run:different-definitions (run:replay journal))
+        (eval '(run:define-run-variable *fee* 1))
+        (is (integerp (nth-value 1 (run:replay journal))))
+        (eval '(run:define-run-variable *fee* 50))
+        (signals run:different-definitions (run:replay journal))))))
+
+(test run-variable.with-the-name-of-a-measure-is-told-of
+  (base:with-own-definitions ()
+    (flet ((told (form) (format nil "~{~A~}" (warnings-of (lambda () (eval form))))))
+      (eval '(run:define-run-variable *weighed* 0))
+      (is (search "*weighed* is a run variable and a measure" (told '(run:defmeasure *weighed* 1))))
+      (eval '(run:defmeasure *measured* 1))
+      (is (search "*measured* is a run variable and a measure"
+                  (told '(run:define-run-variable *measured* 0)))))))
+
+;;; Asking a run makes it the current one.
+
+(defun in-new-thread (function)
+  "Return the value of FUNCTION, called in a new thread."
+  (let ((value nil))
+    (base:join-thread (base:start-thread (lambda () (setf value (funcall function))) "asker"))
+    value))
+
+(test asking.a-headless-run-from-another-thread-sets-its-variables
+  (in-lagoon ()
+    (let ((robot otter) (run time:*simulation*))
+      (setf *catch* 1)
+      (is (equalp '(2 5d0) (in-new-thread (lambda ()
+                                         (time:asking (robot)
+                                           (list (incf *catch*) (robot:robot-x otter)))))))
+      (is (eq run (in-new-thread (lambda () (time:asking (run) (time:current-simulation))))))
+      (in-new-thread (lambda () (time:asking (run) (incf *catch* 10))))
+      (is (= 12 *catch*)))))
+
+(test asking.an-outer-run-sets-its-variables
+  (in-lagoon (:seed 1)
+    (let ((outer time:*simulation*) (robot otter))
+      (in-lagoon (:seed 2)
+        (setf *catch* 5)
+        (is (= 1 (time:asking (robot) (run:simulation-seed (time:current-simulation)))))
+        (time:asking (outer) (setf *catch* 7))
+        (is (= 5 *catch*)))
+      (is (= 7 *catch*)))))
+
+(test asking.an-ended-run-changes-no-other
+  (let ((ended nil))
+    (in-lagoon () (setf *catch* 3 ended otter))
+    (in-lagoon ()
+      (setf *catch* 4)
+      (is (= 9 (time:asking (ended) (setf *catch* 9))))
+      (is (= 4 *catch*)))))

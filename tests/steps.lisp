@@ -58,6 +58,15 @@
     (run:run-ticks 1)
     (is (eq :not-moving (step-code paver 'east)))))
 
+(test step.has-its-duration-for-each-length-of-ticks
+  (dolist (quantum '(1 2 3 5 7 8 20))
+    (run:with-simulation (paver :clean t :parameters `((base:tick-quantum* ,quantum)))
+      (dolist (direction '(east west north-west south))
+        (multiple-value-bind (code ticks) (step-code paver direction)
+          (is (or (eq :too-slow code)
+                  (and (null code) (= ticks (ceiling 15 quantum))))
+              "~A with ~D: ~A in ~D" direction quantum code ticks))))))
+
 (test step.is-blocked-as-drives-are
   (run:with-simulation (paver :clean t)
     (loop repeat 5 do (step-code paver 'east))

@@ -147,6 +147,10 @@ value of RANGE."
     (is (equal "height: 5980 m at tick 2990"
                (plots:sample-text series (first (plots:time-series-ranges series 2990)))))))
 
+(test time-chart.says-whole-numbers-in-full
+  (is (equal '("123459" "-999999999" "1e9" "1234" "0.3333")
+             (mapcar #'plots::sampled-value-text '(123459 -999999999 1000000000 1234.5d0 1/3)))))
+
 (test time-chart.draws-peaks-and-straight-lines
   (flet ((points (&rest ranges)
            (plots::points-of-line (mapcar (lambda (range) (apply #'plots::make-sample-range range))

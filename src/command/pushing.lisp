@@ -7,14 +7,25 @@
 ;;; the cell beyond, and so on: a row. Then the robot drives into the cell. Things that bar no
 ;;; movement stay where they are. Doors and other robots cannot be pushed.
 
+(defun wall-ahead-p (world x y columns rows)
+  "True if what is at (X,Y) cannot go COLUMNS and ROWS of cells on, because a wall or closed door is
+there, or because both cells beside the corner between the cells are barred."
+  (or (blocked-cell-p world (+ x columns) (+ y rows) +wall-or-door+)
+      (and (blocked-cell-p world (+ x columns) y +blocking+)
+           (blocked-cell-p world x (+ y rows) +blocking+)
+           (/= 0 columns)
+           (/= 0 rows))))
+
 (defun row-ahead (robot columns rows)
   "Return the things that bar the way of ROBOT to the cell COLUMNS and ROWS on, and the row of such
 things behind them, the farthest first. The second value is true if the row cannot slide, because a
 wall, a door or another robot is behind it."
   (let ((world (robot-world robot)) (row '()))
-    (loop for x = (+ (robot-x robot) columns) then (+ x columns)
-          for y = (+ (robot-y robot) rows) then (+ y rows)
-          do (when (blocked-cell-p world x y +wall-or-door+)
+    (loop for from-x = (robot-x robot) then x
+          for from-y = (robot-y robot) then y
+          for x = (+ from-x columns)
+          for y = (+ from-y rows)
+          do (when (wall-ahead-p world from-x from-y columns rows)
                (return (values row t)))
              (let ((things '()))
                (do-cell-things (thing (map-index (world-map world) x y) world)

@@ -43,8 +43,8 @@ drive to the middle of the next cell in DIRECTION."
 
 (defun time-to-move (robot angle distance)
   "Return how many ticks, without noise, ROBOT needs to turn by ANGLE and then to drive DISTANCE."
-  (+ (ceiling (abs angle) (robot-turn-angle-now robot))
-     (ceiling distance (robot-speed-now robot))))
+  (+ (ceiling (abs angle) (* (robot-turn-angle-now robot) (double tick-quantum*)))
+     (ceiling distance (tick-distance robot))))
 
 (defun end-step (operation tick)
   "End OPERATION, whose robot has arrived, in TICK."
@@ -80,7 +80,7 @@ drive to the middle of the next cell in DIRECTION."
   (if (speed-zero-p robot)
       (fail-with operation :not-moving)
       (multiple-value-bind (angle distance) (aim-step robot direction)
-        (cond ((> (time-to-move robot angle distance) step-duration*)
+        (cond ((> (time-to-move robot angle distance) (ticks-for step-duration*))
                (fail-with operation :too-slow))
               (t (setf (operation-left operation) distance
                        (operation-subject operation)

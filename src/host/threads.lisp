@@ -168,8 +168,8 @@ messages in other threads. Return the values of FUNCTION."
   (let ((entry (find (current-thread) (car *bound-robot-names*) :key #'first :test-not #'eq)))
     (and entry
          (format nil "The simulation of (with-simulation (~(~{~A~^ ~}~)) ...), in ~A, is known to ~
-                      that thread only. Pass it on in a variable: (let ((simulation ~
-                      (current-simulation))) (make-thread (lambda () ... simulation)))."
+                      that thread only. Pass it on in a variable, and ask it: (let ((simulation ~
+                      (current-simulation))) (make-thread (lambda () (asking (simulation) ...))))."
                  (cddr entry) (thread-name (first entry))))))
 
 (defun other-thread-robot-text (name)

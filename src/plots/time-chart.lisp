@@ -22,14 +22,20 @@ each, and NOTE, a text."
   (note "" string)
   (across (make-axis) axis))
 
+(defun sampled-value-text (value)
+  "Return VALUE as text: whole numbers below a billion in full, as scores are, others rounded."
+  (if (and (integerp value) (< (abs value) 1000000000))
+      (format nil "~D" value)
+      (rounded-number-text value)))
+
 (defun value-and-unit-text (series value)
   "Return VALUE as text, with the unit of SERIES."
-  (format nil "~A~:[ ~A~;~]" (rounded-number-text value) (string= "" (time-series-unit series))
+  (format nil "~A~:[ ~A~;~]" (sampled-value-text value) (string= "" (time-series-unit series))
           (time-series-unit series)))
 
 (defun sample-text (series range)
   "Return a text with the name of SERIES and the values and ticks of RANGE, a sample range."
-  (let ((low (rounded-number-text (sample-range-low range)))
+  (let ((low (sampled-value-text (sample-range-low range)))
         (high (value-and-unit-text series (sample-range-high range))))
     (if (= (sample-range-low range) (sample-range-high range))
         (format nil "~A: ~A at tick ~D" (time-series-name series) high (sample-range-tick range))

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.robot)
 
-(export '(blocked-cell-p line-clear-p in-sight-p within-reach-p in-same-cell-p arrived-at-point-p))
+(export '(blocked-cell-p line-clear-p in-sight-p within-reach-p in-same-cell-p arrived-at-point-p
+          +blocking+))
 
 ;;; Many things have whole coordinates, so lines often pass exactly where four cells meet. Rounding
 ;;; would then decide which of the two cells beside the corner a line meets. So it meets neither: it

@@ -21,15 +21,16 @@ simulation are undone at its end and do not affect other simulations.")
   (timeline-fork-p (simulation-timeline simulation)))
 
 (defun environment-in-this-thread (simulation)
-  "Return an alist from the variables of SIMULATION to their values in this thread."
-  (let ((value-of (if (or (headless-p simulation) (eq simulation *simulation*))
-                      #'symbol-value
-                      #'global-value)))
+  "Return an alist from the variables of SIMULATION to their values in this thread; from the names
+of its robots to the robots, if SIMULATION is not the current one here."
+  (let ((robots (simulation-robots simulation)) (current (eq simulation *simulation*)))
     (loop for symbol in (or (simulation-variables simulation)
-                            (append (mapcar #'robot-name (simulation-robots simulation))
-                                    *simulation-variables*))
+                            (append (mapcar #'robot-name robots) *simulation-variables*))
+          for robot = (and (not current) (find symbol robots :key #'robot-name :test #'eq))
           when (boundp symbol)
-            collect (cons symbol (funcall value-of symbol)))))
+            collect (cons symbol (cond (robot)
+                                       ((or current (headless-p simulation)) (symbol-value symbol))
+                                       (t (global-value symbol)))))))
 
 ;;; A live run that is started inside WITH-SIMULATION is current there only. At the end, the
 ;;; variables of the one that is current outside are restored.
@@ -127,3 +128,12 @@ another simulation was current, also bind the parameters and variables of SIMULA
     (if (eq simulation *simulation*)
         (call)
         (call-in-other-run simulation #'call))))
+
+(defmethod call-in-run-of ((simulation simulation) function)
+  (call-in-simulation simulation function))
+
+(defmethod call-in-run-of ((robot robot) function)
+  (let ((simulation (world-simulation (robot-world robot))))
+    (if simulation
+        (call-in-simulation simulation function)
+        (funcall function))))

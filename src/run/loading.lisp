@@ -235,8 +235,10 @@ the parameters that DIRTY-SIMULATION would restore in this simulation."
 (defun load-simulation (file &key anyway)
   "Return a new headless simulation in the state that SAVE-SIMULATION saved in FILE. The simulation
 has the same STATE-DIGEST as the saved run, and its journal, if any. Given the same requests, it
-continues exactly as the saved run would have. The map, the robots and all other definitions that
-the run uses must be loaded. Nothing in FILE is executed. Signals:
+continues exactly as the saved run would have. It does not become the current run: use
+WITH-LOADED-SIMULATION, or RUN-TICKS and ASKING with the simulation that is returned. The map, the
+robots and all other definitions that the run uses must be loaded. Nothing in FILE is executed.
+Signals:
 - DAMAGED-SIMULATION if FILE is damaged or is not a saved run
 - UNKNOWN-NAME if a definition that the run uses is not loaded
 - DIFFERENT-DEFINITIONS, with the restart LOAD-ANYWAY, if a definition has changed since the run was

@@ -22,6 +22,17 @@
 
 (define-registry measure "measure" :object-p measure-p :by-symbol t)
 
+;; PLOT and HELP look for names among both.
+(defun warn-of-two-meanings (name)
+  "Warn if NAME is the name of a run variable and of a measure."
+  (when (and (lookup-entry name *run-variables*) (lookup-entry name *measures*))
+    (warn-of-definition "~(~A~) is a run variable and a measure. PLOT shows the measure, whose ~
+                         value may differ: rename one of them."
+                        name)))
+
+(defmethod redo-definition :after ((definition variable-definition))
+  (warn-of-two-meanings (variable-definition-name definition)))
+
 (addition defmeasure)
 (define-user-macro defmeasure (&whole form name &body forms &environment environment)
   "Define the measure NAME. FORMS, which may begin with a docstring, compute its value from the
@@ -39,7 +50,8 @@ robots of the run. Return NAME. Signals MALFORMED-DEFINITION."
                           "a form that computes the value, after a docstring if there is one"))
          (when (typep (first (last body)) '(cons (eql quote) (cons cons null)))
            (warn-of-style "~A: the form is quoted: its value would be the form." definition))
-         (list `(register *measures* ',name (make-measure ',name (lambda () ,@body)))))))))
+         (list `(register *measures* ',name (make-measure ',name (lambda () ,@body)))
+               `(warn-of-two-meanings ',name)))))))
 
 ;;; Reading.
 
@@ -73,9 +85,10 @@ MISUSE without a simulation."
   "Return the value of MEASURE, as MEASURE-VALUE does. Signals MISUSE unless it is a finite number."
   (let ((value (measure-value measure)))
     (unless (and (realp value) (finite-p value))
-      (reject-use "The value of the measure ~(~A~) is ~A, which is no number. For a truth value, ~
-                   define the measure as (if form 1 0)."
-                  (measure-name (find-measure measure)) (safe-text value)))
+      (reject-use "The value of the measure ~(~A~) is ~A, which is no finite number.~:[~; For a ~
+                   truth value, define the measure as (if form 1 0).~]"
+                  (measure-name (find-measure measure)) (safe-text value)
+                  (member value '(nil t))))
     value))
 
 ;;; Over a run.

@@ -214,7 +214,8 @@ error in an init form is signalled when the variable is first used, since many r
     name))
 
 (addition define-run-variable)
-(define-user-macro define-run-variable (name init &optional documentation)
+(define-user-macro define-run-variable (&whole form name init &optional documentation
+                                        &environment environment)
   "Define NAME as a variable with a separate value in each run: each WITH-SIMULATION, SIMULATOR,
 fork and trial has its own, also after REWIND, in saved runs and in replays. SETF, INCF and PUSH set
 it; code sees at once what it has set. Values are plain data, or things and robots of the run; in a
@@ -228,14 +229,16 @@ fork these are the counterparts.
 - A new definition does not change the value in runs that have begun.
 Using NAME without a run signals MISUSE, setting it to another object WRONG-ARGUMENT. Signals
 MALFORMED-DEFINITION if NAME is another variable."
-  (check-run-variable-name name)
-  (unless (typep documentation '(or null string))
-    (reject-clause (definition-title "define-run-variable" name) documentation
-                   "(define-run-variable name init [string])"))
-  `(progn
-     (eval-when (:compile-toplevel :load-toplevel :execute)
-       (define-symbol-macro ,name (run-variable ',name)))
-     (install-run-variable ',name (lambda () ,init) ,documentation)))
+  (expand-definition
+   form environment
+   (lambda ()
+     (check-run-variable-name name)
+     (unless (typep documentation '(or null string))
+       (reject-clause (definition-title "define-run-variable" name) documentation
+                      "(define-run-variable name init [string])"))
+     (values `((install-run-variable ',name (lambda () ,init) ,documentation))
+             `((eval-when (:compile-toplevel :load-toplevel :execute)
+                 (define-symbol-macro ,name (run-variable ',name))))))))
 
 ;;; Showing, digesting, checking.
 

@@ -2,21 +2,29 @@
 
 (in-package :ars-magna.time)
 
-(export '(ask-later))
+(export '(ask-later call-in-run-of))
+
+(defgeneric call-in-run-of (object function)
+  (:documentation "Call FUNCTION, with the run of OBJECT as the current one if OBJECT has a run.")
+  (:method (object function)
+    (declare (ignore object))
+    (funcall function)))
 
 (addition ask)
 (defun ask (object function)
   "Call FUNCTION, without arguments, while the world of OBJECT, a simulation or robot, stands still.
-If this thread or no thread owns the world, call FUNCTION at once; else the owning thread calls
-FUNCTION between two ticks. Return the values of FUNCTION. Errors of FUNCTION are signalled in this
-thread. Signals MISUSE inside a tick of another world, and if FUNCTION is aborted."
+The run of OBJECT is the current one meanwhile, also for run variables and measures. If this thread
+or no thread owns the world, call FUNCTION at once; else the owning thread calls FUNCTION between
+two ticks. Return the values of FUNCTION. Errors of FUNCTION are signalled in this thread. Signals
+MISUSE inside a tick of another world, and if FUNCTION is aborted."
   (let ((custody (timeline-custody (timeline-of object))))
-    (call-with-custody custody function (lambda () (ask-owner custody function)))))
+    (flet ((answer () (call-in-run-of object function)))
+      (call-with-custody custody #'answer (lambda () (ask-owner custody #'answer))))))
 
 (addition asking)
 (defmacro asking ((object) &body body)
-  "Run BODY while the world of OBJECT, a simulation or robot, stands still, as ASK calls a function.
-Return the values of BODY."
+  "Run BODY while the world of OBJECT, a simulation or robot, stands still, with its run as the
+current one, as ASK calls a function. Return the values of BODY."
   `(ask ,object (lambda () ,@body)))
 
 ;;; Questions of other threads.

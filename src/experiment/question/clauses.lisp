@@ -215,7 +215,8 @@ fails TEST."
 
 (defun valid-measure-part-p (key part)
   "True if PART can be a part of the clause KEY, :measure or :each-tick."
-  (or (typep part 'named-form)
+  ;; A keyword as the form is a slip, such as (score :mean).
+  (or (and (typep part 'named-form) (not (keywordp (second part))))
       (multiple-value-bind (name summary) (parse-measure part)
         (and name (not (keywordp name)) (or (null summary) (eq :measure key))))))
 
