@@ -51,6 +51,7 @@ or :MESSAGES" :addition)
   (instant-p nil boolean "the command has no delay: it is done in the tick after it was issued, even
 if another command follows" :export)
   (report nil (or null function))
+  (fitting '() list "the lambda list of the last continuation that fitted the command" :writable)
   (guarded-p nil boolean "a user has defined the command: errors in its code become messages")
   (body nil function))
 

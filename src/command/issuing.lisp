@@ -54,20 +54,33 @@ position. TOLD lists the names of the arguments."
             do (let ((other (position name told :test #'string=)))
                  (when (and other (/= place other)) (return t)))))))
 
+(defun continuation-fits-p (continuation told)
+  "True if CONTINUATION can take the arguments with the names TOLD, as far as is known."
+  (and (callable-with-count-p continuation (length told))
+       (not (misplaced-parameter-p continuation told))))
+
 (defun warn-of-continuation (command world continuation
                              &optional (told (continuation-arguments command)))
   "Warn once if CONTINUATION cannot take the arguments that COMMAND passes. TOLD lists their names."
   (let ((*print-pretty* nil))
     (when (and continuation
                (or (functionp continuation) (fboundp continuation))
-               (or (not (callable-with-count-p continuation (length told)))
-                   (misplaced-parameter-p continuation told)))
+               (not (continuation-fits-p continuation told)))
       (warn-once (list :continuation (command-name command)) world
                  (format nil "~(~A~): the continuation takes ~(~:A~), but is called with ~(~A~). ~
                               Write (continuation ~:*~(~A~) ...)."
                          (command-name command)
                          (lambda-list-of continuation)
                          told)))))
+
+;; Programs give the same continuation again and again; its lambda list is then the same list.
+(defun check-continuation (command world continuation)
+  "Warn once if CONTINUATION cannot take the arguments that COMMAND passes."
+  (let ((list (and (functionp continuation) (lambda-list-of continuation))))
+    (unless (and list (eq list (command-fitting command)))
+      (warn-of-continuation command world continuation)
+      (when (and list (continuation-fits-p continuation (continuation-arguments command)))
+        (setf (command-fitting command) list)))))
 
 ;;; One simulation inside another.
 
@@ -82,8 +95,8 @@ position. TOLD lists the names of the arguments."
   "If a program in a simulation of another world issues a request to an idle WORLD, record this."
   (let ((timeline (world-timeline world)))
     (when (and *simulation*
-               (from-program-p)
                (not (eq timeline (timeline-of *simulation*)))
+               (from-program-p)
                (not (live-p timeline))
                (not (timeline-passing-p timeline)))
       (first-warning-for-key-p (other-run-request-key world) world))))
@@ -131,10 +144,11 @@ BEFORE may be left over from earlier work. No message replaces another."
 (defun warn-if-interrupting (command resource arguments timeline)
   "Warn, once for each pair of commands, if COMMAND interrupts a command of RESOURCE that the same
 program has just issued without a continuation: in this tick or, in a live run, in the last tick."
-  (when (and (from-program-p) (takes-time-p command))
+  (when (takes-time-p command)
     (let ((before (or (pending-request resource timeline)
                       (operation-just-begun resource timeline))))
       (when (and before
+                 (from-program-p)
                  (not (may-replace-p command resource arguments before))
                  (null (operation-continuation before))
                  (equal (current-asker-note) (request-asker before)))
@@ -159,8 +173,8 @@ ARGUMENTS, while the same turn is in progress without a continuation. The turn t
     (when (and (operation-p before)
                (eq command (operation-command before))
                (trait-p :turns command)
-               (from-program-p)
                (not (live-p timeline))
+               (from-program-p)
                (not (operation-finished-p before))
                (null (operation-continuation before))
                (equal arguments (operation-arguments before))
@@ -317,6 +331,6 @@ Signals MISUSE if the run is over, or if an argument belongs to another run or a
     (warn-of-arguments command world arguments)
     (record-bindings command world)
     (record-other-run-request world)
-    (warn-of-continuation command world continuation)
+    (check-continuation command world continuation)
     (warn-if-postponed command resource robot)
     (values)))

@@ -15,8 +15,9 @@
 
 (defun find-step-direction (name)
   "Return the list in *STEP-DIRECTIONS* for NAME, a symbol or string, or NIL."
-  (and (typep name '(or symbol string))
-       (find name *step-directions* :key #'first :test #'same-name-p)))
+  (or (assoc name *step-directions* :test #'eq)
+      (and (typep name '(or symbol string))
+           (find name *step-directions* :key #'first :test #'same-name-p))))
 
 (define-argument-type 'direction #'find-step-direction
   (one-line "a direction: north, north-east, east, south-east, south, south-west, west or

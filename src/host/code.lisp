@@ -99,9 +99,11 @@ other functions, constants and closed-over values. Numbers, characters and strin
 
 (defun accepts-count-p (lambda-list count)
   "True if a function with LAMBDA-LIST accepts COUNT arguments, counting keywords and their values."
-  (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list lambda-list)
-    (and (<= (length required) count)
-         (or rest-p keys (<= count (+ (length required) (length optional)))))))
+  (if (notany (lambda (element) (member element lambda-list-keywords)) lambda-list)
+      (= count (length lambda-list))
+      (multiple-value-bind (required optional rest-p keys) (parse-ordinary-lambda-list lambda-list)
+        (and (<= (length required) count)
+             (or rest-p keys (<= count (+ (length required) (length optional))))))))
 
 (defun callable-with-count-p (function count)
   "True if FUNCTION, a function or a name, accepts COUNT arguments or has an unknown lambda list."

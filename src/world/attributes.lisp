@@ -89,6 +89,9 @@ discrete or numeric."
 (define-global *likenesses* (make-hash-table :test 'eq :synchronized t)
   "A table from undeclared names to the names that they probably misspell, or to NIL.")
 
+(define-global *misspellings* (make-hash-table :test 'eq :synchronized t)
+  "A table from names of attributes of new things to the values of FIND-MISSPELLING.")
+
 (defun define-attribute (name domain &key (success 1) (base 0) (max-mult 1) (noticed 0)
                                        supported-by)
   "Define or redefine the attribute NAME for DEFATTRIBUTE, and return NAME (reading 120)."
@@ -116,6 +119,7 @@ discrete or numeric."
                      :noticed (checked-probability definition :noticed noticed)
                      :supporters (mapcar #'attribute-key supported-by)))
     (clrhash *likenesses*)
+    (clrhash *misspellings*)
     (when old (warn-of-unfit-recipes (declared-attribute name)))
     name))
 

@@ -218,42 +218,65 @@ it is retried. In a large group, memory is read ahead if the first member to run
                                (attachment-thing attachment)))
                     attachment)))
 
-(defun run-all-kickers (world)
-  (let ((*world* world) (self nil)
-        (dice (world-dice world :kickers))
-        (due (nreverse (shiftf (world-due-kickers world) '()))))
-    (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
-    (let ((tick (incf (world-kicker-tick world))))
-      (flet ((run-due (attachment) (run-due-kicker attachment world))
-             (run-chance (group)
-               (unless (skip-group group) (run-group group dice (if due tick 0)))))
-        (declare (dynamic-extent #'run-due #'run-chance))
-        (unwind-protect (call-each #'run-due due)
-          (call-each #'run-chance (world-kicker-groups world)))))))
+(defun take-due-kickers (world tick)
+  "Remove from WORLD, and return, the attachments due in TICK, in the order of the requests."
+  (let ((later '()) (due '()))
+    (dolist (attachment (world-due-kickers world))
+      (if (= tick (attachment-due attachment))
+          (push attachment due)
+          (push attachment later)))
+    (setf (world-due-kickers world) (nreverse later))
+    due))
 
-(declaim (inline run-kickers))
+(defun run-all-kickers (world)
+  (let* ((*world* world) (self nil)
+         (dice (world-dice world :kickers))
+         (tick (1+ (world-kicker-tick world)))
+         (due (take-due-kickers world tick)))
+    (unless (= (world-kicker-generation world) *kicker-generation*) (regroup-kickers world))
+    (setf (world-kicker-tick world) tick)
+    (flet ((run-due (attachment) (run-due-kicker attachment world))
+           (run-chance (group)
+             (unless (skip-group group) (run-group group dice (if due tick 0)))))
+      (declare (dynamic-extent #'run-due #'run-chance))
+      (unwind-protect (call-each #'run-due due)
+        (call-each #'run-chance (world-kicker-groups world))))))
+
+(declaim (inline only-later-kickers-p run-kickers))
+(defun only-later-kickers-p (world)
+  "True if the only kickers of WORLD that may run are requested for later ticks than the next."
+  (and (null (world-kicker-groups world))
+       (= (world-kicker-generation world) *kicker-generation*)
+       (loop with next = (1+ (world-kicker-tick world))
+             for attachment in (world-due-kickers world)
+             never (= next (attachment-due attachment)))))
+
 (defun run-kickers (world)
   "Run the kickers of all things in WORLD for one tick: first those that RUN-KICKER has requested,
 then those whose trials succeed. Errors in a kicker are queued as error messages. Return nothing."
-  (when (or (world-kicker-groups world) (world-due-kickers world)) (run-all-kickers world))
+  (when (or (world-kicker-groups world) (world-due-kickers world))
+    (if (only-later-kickers-p world)
+        (incf (world-kicker-tick world))
+        (run-all-kickers world)))
   (values))
 
 (public run-kicker)
-(defun run-kicker (attachment)
-  "Run ATTACHMENT, usually SELF, once more in the next tick, whatever its probability and test. In
-that tick ATTACHMENT has no trial (manual 5.3.1). Return nothing. See reading 170."
+(defun run-kicker (attachment &optional (ticks 1))
+  "Run ATTACHMENT, usually SELF, once more after TICKS, by default in the next tick, whatever its
+probability and test. In that tick ATTACHMENT has no trial. A further request before then changes
+the tick (manual 5.3.1). Return nothing. Signals WRONG-ARGUMENT. See reading 170."
   (check-argument run-kicker attachment (attachment-p attachment) "SELF, while a kicker runs")
+  (check-argument run-kicker ticks (whole-p ticks 1) "a whole number of ticks, from 1 to 1e9")
   (let ((world (world-of-living-thing (attachment-thing attachment))))
     (when (and world (attachment-alive-p attachment))
-      (changing (world run-kicker attachment)
-        (let ((next (1+ (world-kicker-tick world))))
-          (unless (= next (attachment-due attachment))
-            (setf (attachment-due attachment) next)
-            (push attachment (world-due-kickers world)))))))
+      (changing (world run-kicker attachment ticks)
+        (let ((requested-p (> (attachment-due attachment) (world-kicker-tick world))))
+          (setf (attachment-due attachment) (+ ticks (world-kicker-tick world)))
+          (unless requested-p (push attachment (world-due-kickers world)))))))
   (values))
 
 (define-argument-type 'attachment #'attachment-p "a kicker on a thing, as SET-KICKER returns")
-(define-operator 'run-kicker '(attachment) #'run-kicker)
+(define-operator 'run-kicker '(attachment) #'run-kicker :rest 'tick-span)
 
 (defun world-has-kickers-p (world)
   "True if any kicker in WORLD may run, so that ticks can change WORLD."

@@ -183,13 +183,17 @@ a body. Return THING. See reading 173."
     (or (assoc key *options-of-things*)
         (find-if (lambda (option) (misspelling-p key (first option))) *options-of-things*))))
 
+(defun find-misspelling (name)
+  "Return (NAME like) if NAME, of an attribute, resembles the attribute LIKE, (NAME NIL) if NAME is
+that of an option, else NIL."
+  (let ((like (declared-name-like name)))
+    (and (or like (option-of-things-p name)) (list name like))))
+
 (defun find-misspellings (descriptor)
-  "Return a list of probable mistakes in DESCRIPTOR: (name like) for a name that resembles the
-attribute LIKE, and (name NIL) for the name of an option."
+  "Return a list of probable mistakes in DESCRIPTOR, as FIND-MISSPELLING returns them."
   (loop for (name) in descriptor
-        for like = (declared-name-like name)
-        when (or like (option-of-things-p name))
-          collect (list name like)))
+        for slip = (ensure-gethash name *misspellings* (find-misspelling name))
+        when slip collect slip))
 
 (defun option-of-things-p (name)
   "True if NAME, used as an attribute, is an option for making things and not a declared attribute."
