@@ -174,6 +174,8 @@
     :components ((:file "charts") (:file "pictures")))
    (:module "src/experiment/replay" :serial t
     :components ((:file "replaying") (:file "failures")))
+   (:module "src/experiment/testbed" :serial t
+    :components ((:file "testbed") (:file "running") (:file "claims")))
    (:module "src" :components ((:file "all"))))
   ;; The packages are locked once they are loaded.
   :perform (prepare-op (operation system)
@@ -198,7 +200,9 @@
                  (:file "plans-handling")
                  (:file "plans-errands") (:file "plans-locks") (:file "trials")
                  (:file "plans-searching")
-                 (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))))
+                 (:file "going") (:file "errand") (:file "experiments") (:file "choosing")
+                 (:module "testbeds" :serial t
+                  :components ((:file "package") (:file "tileworld-holes")))))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"

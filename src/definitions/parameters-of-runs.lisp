@@ -39,7 +39,10 @@ WRONG-ARGUMENT for an invalid value and UNKNOWN-NAME for an unknown parameter."
 (defun call-with-parameter-values (values function)
   "Call FUNCTION with the parameters bound to VALUES, a vector as PARAMETER-VALUES returns. At the
 end, store the parameters' values in VALUES. Return the values of FUNCTION."
-  (let ((known (coerce values 'list)))
+  ;; Parameters that were defined after VALUES were made have their defaults.
+  (let ((known (append (coerce values 'list)
+                       (mapcar #'parameter-default (nthcdr (length values)
+                                                           (registry-objects *parameters*))))))
     (with-parameters-bound (known)
       (multiple-value-prog1 (funcall function)
         (replace values (parameter-values))))))
@@ -97,7 +100,7 @@ caller is a thread with its own bindings of parameters: adopt values that other 
 globally, and make values set in this thread global. Reset an invalid value, with an error message."
   (declare #.*hot* (type simple-vector known) (type function note))
   (loop for parameter in (registry-objects *parameters*)
-        for index of-type fixnum from 0
+        for index of-type fixnum from 0 below (length known)
         for symbol = (parameter-symbol (the parameter parameter))
         for old = (svref known index)
         for here = (symbol-value symbol)

@@ -26,4 +26,4 @@ resumed, on all processors and on many machines. Names lparallel.")
                 #:lisp-failure #:lisp-failure-condition)
   (:import-from :ars-magna.rpl.fluents #:*realm* #:fork-realm #:fluent-p #:fluent-text)
   (:import-from :ars-magna.rpl-robot #:*on-plan-failure* #:*plan-limit*
-                #:*trace-plans* #:stranded-plan-text))
+                #:*trace-plans* #:stranded-plan-text #:begin-plan))

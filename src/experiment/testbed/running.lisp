@@ -1,0 +1,89 @@
+;;;; running.lisp -- RUN-TESTBED, and what TESTBED tells about a testbed.
+
+(in-package :ars-magna.experiment)
+
+(addition start-agent)
+(defun start-agent (agent)
+  "Start AGENT, the name of a plan or function, in the current simulation: begin the plan, or call
+the function without arguments. Errors end the trial, but a plan's failures leave the game to go on.
+Return nothing. Signals UNKNOWN-NAME."
+  (cond ((and (symbolp agent) (find-procedure agent nil)) (begin-plan agent))
+        ((and agent (symbolp agent) (fboundp agent)) (funcall agent))
+        (t (reject-name "agent" agent '())))
+  (values))
+
+(addition run-testbed)
+(defun run-testbed (name &key agents knobs (seeds 100) tuning (workers 1) directory
+                              (stream *error-output*))
+  "Run AGENTS, names of plans or functions, in the testbed NAME, all on the same SEEDS, a number of
+seeds. Return results, as RUN-EXPERIMENT does: the factor AGENT, and the score among the measures.
+By default all agents of the testbed run. KNOBS are lists (knob value). If TUNING is true, the seeds
+are those to write agents with, else those to test them. WORKERS, DIRECTORY and STREAM are as for
+RUN-EXPERIMENT. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT."
+  (let* ((testbed (find-testbed name))
+         (agents (or agents (mapcar #'first (testbed-agents testbed)))))
+    (check-agents 'run-testbed testbed agents)
+    (check-knobs 'run-testbed testbed knobs)
+    (run-experiment-object (testbed-experiment testbed agents :settings knobs :tuning tuning)
+                           seeds workers directory stream)))
+
+(defun run-experiment-object (experiment seeds workers directory stream)
+  (run-experiment (experiment-name experiment) :trials seeds :workers workers
+                  :directory directory :stream stream))
+
+(defun check-knobs (operator testbed knobs)
+  (unless (and (proper-list-p knobs)
+               (every (lambda (part) (typep part 'named-form)) knobs))
+    (reject-argument operator 'knobs knobs "lists (knob value)"))
+  (loop for (name) in knobs
+        do (unless (member name (testbed-knobs testbed))
+             (reject-name "knob" name (testbed-knobs testbed)))))
+
+;;; Telling.
+
+(defun agent-name-text (agent)
+  (string-downcase agent))
+
+(defun knob-line (name)
+  (let ((parameter (find-parameter name)))
+    (format nil "~A, ~A~@[ ~A~]; default ~(~A~). ~A" (parameter-name parameter)
+            (describe-type (parameter-type parameter))
+            (and (string/= "" (parameter-unit parameter)) (parameter-unit parameter))
+            (value-text (parameter-default parameter))
+            (one-line (parameter-sentence parameter)))))
+
+(defun write-testbed-section (title lines stream)
+  (when lines
+    (format stream "~%~A~%" title)
+    (dolist (line lines) (write-wrapped line stream :first "  - "))))
+
+(defun write-testbed (testbed stream)
+  (write-wrapped (format nil "~(~A~): ~A" (testbed-name testbed)
+                         (one-line (testbed-documentation testbed)))
+                 stream)
+  (write-testbed-section "Rules" (testbed-rules testbed) stream)
+  (write-testbed-section "Knobs" (mapcar #'knob-line (testbed-knobs testbed)) stream)
+  (write-testbed-section (format nil "Agents, by the score ~(~A~)" (testbed-score testbed))
+                         (loop for (name text) in (testbed-agents testbed)
+                               collect (format nil "~(~A~): ~A" name text))
+                         stream)
+  (write-testbed-section "Claims" (mapcar #'first (testbed-claims testbed)) stream)
+  (write-testbed-section "Sources" (testbed-sources testbed) stream)
+  (destructuring-bind (&key tuning testing) (testbed-seeds testbed)
+    (write-testbed-section "Seeds" (list (format nil "for tuning from ~D on; for testing from ~D on"
+                                                 (1+ tuning) (1+ testing)))
+                           stream)))
+
+(addition testbed)
+(defun testbed (name &optional (stream *standard-output*))
+  "Write the rules, knobs, agents, claims and sources of the testbed NAME to STREAM. Return the
+testbed. Signals UNKNOWN-NAME."
+  (let ((testbed (find-testbed name)))
+    (write-testbed testbed stream)
+    testbed))
+
+(defun write-testbed-list (stream)
+  "Write the names of all testbeds to STREAM, with a sentence on each."
+  (dolist (testbed (all-testbeds))
+    (write-wrapped (first-sentence (testbed-documentation testbed)) stream
+                   :first (format nil "  ~(~20A~)" (testbed-name testbed)))))

@@ -1,0 +1,202 @@
+;;;; testbed.lisp -- DEFINE-TESTBED: a game with rules, knobs and a score, for agents to compare.
+
+(in-package :ars-magna.experiment)
+
+(export '(testbed-experiment write-testbed-list))
+
+;;; The manual measures itself against the testbeds of its time (1.2, 1.3). A testbed is an
+;;; experiment whose factor AGENT has the agents as values. So its trials, tables, comparisons and
+;;; pictures are those of experiments. Its knobs are parameters. An agent is the name of a plan or
+;;; function, so any agent can be compared with those that the testbed has.
+
+(addition testbed-p)
+(define-record (testbed (:constructor make-testbed))
+  "A testbed: an experiment on agents, with its rules and what is claimed about it."
+  (name nil symbol "the symbol that names the testbed" :addition)
+  (documentation "" string "what the testbed is about, a string")
+  (rules '() list "the rules, strings" :addition)
+  (sources '() list "where the rules are from, strings" :addition)
+  (knobs '() list "the parameters that are knobs of the testbed, symbols" :addition)
+  (agents '() list "the agents, lists (name text)" :addition)
+  (score nil symbol "the name of the measure that is the score" :addition)
+  (seeds '() list "the seeds, a list (:tuning N :testing N): trial T has the seed N + T" :addition)
+  (sweeps '() list "lists ((knob value...) (knob value)...): what the page of results varies")
+  (claims '() list "lists (text settings relation...): see CHECK-CLAIMS")
+  (package *package* package)
+  (title "" string "what error messages call the definition")
+  (form '() list "the form of the definition")
+  (deciding '() list "the clauses that affect a trial")
+  (options nil function "a function that returns options of EXPERIMENT-FROM-OPTIONS"))
+
+(defmethod print-object ((testbed testbed) stream)
+  (print-named testbed stream (testbed-name testbed) (format nil "TESTBED ~A" (testbed-name testbed))))
+
+(define-registry testbed "testbed" :object-p testbed-p :by-symbol t)
+
+;;; Defining.
+
+(defparameter *testbed-clauses*
+  '((:rules "(:rules string...)")
+    (:sources "(:sources string...)")
+    (:knobs "(:knobs parameter...), parameters that DEFINE-KNOB or the simulator has defined")
+    (:agents "(:agents (name string)...), names of plans or functions")
+    (:score "(:score measure), the name of a measure that DEFMEASURE defines")
+    (:seeds "(:seeds :tuning n :testing n), integers")
+    (:sweeps "(:sweeps ((knob value...) (knob value)...)...)")
+    (:claims "(:claims (string (((knob value)...)...) relation...)...)"))
+  "The clauses that a testbed has besides those of an experiment, and their syntax.")
+
+(defun testbed-clause-valid-p (clause)
+  (let ((parts (rest clause)))
+    (flet ((all (type) (and (proper-list-p parts) parts
+                            (every (lambda (part) (typep part type)) parts))))
+      (ecase (first clause)
+        ((:rules :sources) (all 'string))
+        (:knobs (and (all 'symbol) (every #'parameter-of-variable parts)))
+        (:agents (all '(cons (and symbol (not null)) (cons string null))))
+        (:score (and (all '(and symbol (not null))) (null (rest parts))))
+        (:seeds (typep parts '(cons (eql :tuning)
+                               (cons integer (cons (eql :testing) (cons integer null))))))
+        (:sweeps (all '(cons cons)))
+        (:claims (every #'claim-valid-p parts))))))
+
+(defun claim-valid-p (claim)
+  (and (proper-list-p claim)
+       (typep claim '(cons string (cons cons cons)))
+       (every (lambda (settings) (every (lambda (part) (typep part 'named-form)) settings))
+              (second claim))
+       (every #'relation-valid-p (cddr claim))))
+
+(defun relation-valid-p (relation)
+  "True if RELATION is one of those that CHECK-CLAIMS lists."
+  (typep relation '(or (cons (member :better :within) (cons symbol (cons symbol (cons real null))))
+                    (cons (eql :narrows) (cons symbol (cons symbol (cons cons null)))))))
+
+(defun testbed-clause (key clauses)
+  (rest (find key clauses :key #'first)))
+
+(defun check-testbed-clauses (definition clauses)
+  (dolist (clause clauses)
+    (let ((syntax (and (consp clause) (assoc (first clause) *testbed-clauses*))))
+      (when (and syntax (not (testbed-clause-valid-p clause)))
+        (reject-clause definition clause (second syntax)))))
+  (loop for key in '(:rules :agents :score :seeds)
+        do (unless (testbed-clause key clauses)
+             (reject-clause definition (list key) (second (assoc key *testbed-clauses*))))))
+
+(defun own-testbed-clause-p (clause)
+  (and (consp clause) (assoc (first clause) *testbed-clauses*)))
+
+(defun experiment-clauses-of-testbed (clauses)
+  "Return the clauses of the experiment on the agents of a testbed with CLAUSES."
+  (list* `(:vary (,(intern "AGENT") ,@(loop for (name) in (testbed-clause :agents clauses)
+                                           collect `',name)))
+         `(:seed ,(getf (testbed-clause :seeds clauses) :testing))
+         (let* ((score (first (testbed-clause :score clauses)))
+                (others (remove-if #'own-testbed-clause-p clauses))
+                (measures (find :measure others :key #'first)))
+           (cons `(:measure ,score ,@(rest measures)) (remove measures others)))))
+
+(addition define-testbed)
+(define-user-macro define-testbed (&whole form name documentation &body clauses
+                                   &environment environment)
+  "Define the testbed NAME, which RUN-TESTBED runs. DOCUMENTATION is a string. Return NAME. The
+CLAUSES are those of DEFEXPERIMENT, except :vary and :seed, and these:
+  (:rules string...)       the rules of the game
+  (:sources string...)     where they are from
+  (:knobs parameter...)    what can be varied: parameters, see DEFINE-KNOB
+  (:agents (name string)...)  agents, each with a sentence. A name is that of a plan or function;
+                           in the clause :run it is the value of the variable AGENT, see START-AGENT
+  (:score measure)         the measure that says how good an agent is: more is better
+  (:seeds :tuning n :testing n)  trial T has the seed N + T: one N to write agents with, another to
+                           test them
+  (:sweeps ((knob value...) (knob value)...)...)  what the page of results varies, all else given
+  (:claims (string (((knob value)...)...) relation...)...)  what is said of the agents: see
+                           CHECK-CLAIMS
+Signals MALFORMED-DEFINITION."
+  (let ((definition (definition-title "define-testbed" name)))
+    (expand-definition
+     form environment
+     (lambda ()
+       (unless (and name (symbolp name) (not (keywordp name)))
+         (reject-clause definition name "a symbol as the name"))
+       (unless (stringp documentation)
+         (reject-clause definition documentation "a string that says what the testbed is about"))
+       (check-testbed-clauses definition clauses)
+       (let ((experiment (experiment-clauses-of-testbed clauses)))
+         (check-all-clauses definition name experiment)
+         (list (testbed-registration name documentation definition clauses experiment form)))))))
+
+(defun testbed-registration (name documentation definition clauses experiment form)
+  `(register *testbeds* ',name
+             (make-testbed
+              :name ',name :documentation ,documentation :title ,definition
+              :score ',(first (testbed-clause :score clauses))
+              ,@(loop for key in '(:rules :sources :knobs :agents :seeds :sweeps :claims)
+                      collect key
+                      collect `',(testbed-clause key clauses))
+              :form ',form
+              :deciding ',(trial-affecting-clauses experiment)
+              ;; Without the operator and the name.
+              :options (lambda ()
+                         (list ,@(cddr (definition-form name documentation experiment form)))))))
+
+(addition define-knob)
+(define-user-macro define-knob (name default unit type documentation)
+  "Define the parameter NAME, a special variable, for a testbed. TYPE gives the range, as in (real 0
+100), (integer 1 9) or (member :four :eight); UNIT is a string. Experiments can vary the knob,
+WITH-SIMULATION can bind it, journals record it. Define knobs when a file is loaded, not during a
+run. Return NAME. Signals MALFORMED-DEFINITION."
+  (let ((definition (definition-title "define-knob" name)))
+    (unless (and name (symbolp name) (users-symbol-p name)
+                 (or (parameter-of-variable name) (null (variable-kind name))))
+      (reject-clause definition name "a symbol that is no other variable"))
+    (unless (and (stringp unit) (stringp documentation))
+      (reject-clause definition (list unit documentation) "a unit and a sentence, two strings"))
+    (unless (typep type '(or (cons (member real integer) (cons real (cons real null)))
+                          (cons (eql member) cons) (eql boolean)))
+      (reject-clause definition type "(real low high), (integer low high), (member ...) or boolean"))
+    (unless (typep default type)
+      (reject-clause definition default (format nil "a default of the type ~(~S~)" type)))
+    `(eval-when (:compile-toplevel :load-toplevel :execute)
+       (define-parameter ,name ,default
+           (:unit ,unit :type ,type :kind :setting :group "Testbeds" :addition t)
+         ,documentation))))
+
+;;; The experiment.
+
+(defun agent-p (name)
+  "True if the symbol NAME names a plan or a function, which an agent can be."
+  (and (symbolp name) name
+       (or (find-procedure name nil) (and (fboundp name) (not (macro-function name))))))
+
+(defun check-agents (operator testbed agents)
+  (unless (and (proper-list-p agents) agents)
+    (reject-argument operator 'agents agents "a list of agents, names of plans or functions"))
+  (dolist (agent agents)
+    (unless (agent-p agent)
+      (reject-name "agent" agent (mapcar #'first (testbed-agents testbed))))))
+
+(defun reseeded-clauses (clauses seed)
+  (substitute-if (list :seed seed) (lambda (clause) (eq :seed (first clause))) clauses))
+
+(defun testbed-experiment (testbed agents &key settings sweep tuning)
+  "Return an experiment on AGENTS in TESTBED. SETTINGS are lists (knob value). SWEEP, a list (knob
+value...), varies a knob. Use the seeds for tuning if TUNING is true, else those for testing."
+  (let* ((options (let ((*package* (testbed-package testbed))) (funcall (testbed-options testbed))))
+         (seed (getf (testbed-seeds testbed) (if tuning :tuning :testing)))
+         (variable (first (getf options :variables)))
+         (experiment
+           (apply #'experiment-from-options (testbed-name testbed) (testbed-title testbed)
+                  :factors (list* (list (list variable) agents)
+                                  (and sweep (list (list (list (first sweep)) (rest sweep)))))
+                  :parameters (append (getf options :parameters)
+                                      (loop for (name value) in settings
+                                            collect (list (list name value) value)))
+                  :seed seed
+                  :form (testbed-form testbed)
+                  :deciding (reseeded-clauses (testbed-deciding testbed) seed)
+                  options)))
+    (setf (experiment-package experiment) (testbed-package testbed))
+    (register *experiments* (testbed-name testbed) experiment)
+    experiment))

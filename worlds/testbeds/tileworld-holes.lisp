@@ -1,0 +1,244 @@
+;;;; tileworld-holes.lisp -- Tileworld with holes only (Kinny and Georgeff 1991).
+
+;;; Holes open and close on a floor of 15 x 15 cells. The agent fills the hole in whose cell it ends
+;;; a step. A tick is a unit of the world's clock, or half of one if DYNAMISM* is 1, since a step
+;;; must last two ticks to turn and drive. So no time is rounded.
+
+(in-package :ars-testbeds)
+(in-readtable :nisp)
+
+(define-knob dynamism* 32 "world units" (integer 1 1000)
+  "How fast the world is: how many units of its clock pass while the agent takes a step (gamma).")
+(define-knob planning-time* 1 "steps" (real 0 100)
+  "How long the agent plans, in the time of a step (p). It pays by THINK.")
+(define-knob holes* 600 "holes" (integer 1 100000) "How many holes open in a game.")
+(define-knob directions* 4 "" (member 4 8) "In how many directions the agent steps.")
+
+;;; The world.
+
+(define-run-variable *holes* '() "The open holes, things, the newest first.")
+(define-run-variable *taken* '() "Lists (x y end): cells that have a hole, filled or not, until END.")
+(define-run-variable *opened* 0 "How many holes have opened.")
+(define-run-variable *possible* 0 "The sum of the scores of the holes that have opened.")
+(define-run-variable *score* 0 "The sum of the scores of the holes that were filled.")
+(define-run-variable *filled* 0 "How many holes were filled.")
+
+(defun ticks-per-unit () (ceiling 2 dynamism*))
+(defun step-ticks-here () (* dynamism* (ticks-per-unit)))
+(defun roll-up (low high) (+ low (roll-index (- high low -1) (world-dice *world* :user))))
+(defun roll-time (low high) (* (ticks-per-unit) (roll-up low high)))
+
+(defun cell-for-hole (tick)
+  "Return a random cell (x y) that no hole has at TICK, whether filled or not."
+  (setf *taken* (remove-if (lambda (cell) (<= (third cell) tick)) *taken*))
+  (loop with taken = *taken*
+        for x = (roll-up 1 15)
+        for y = (roll-up 1 15)
+        unless (find-if (lambda (cell) (and (= x (first cell)) (= y (second cell)))) taken)
+          return (list x y)))
+
+(defun close-hole (hole)
+  (setf *holes* (remove hole *holes*))
+  (destroy-thing hole))
+
+(defkicker close-up (hole) (:prob 0) (close-hole hole))
+
+(defun open-hole (tick)
+  "Open a hole. What opens depends on the seed only, not on what the agent does."
+  (let* ((life (roll-time 240 960)) (score (roll-up 1 10)) (cell (cell-for-hole tick))
+         (hole (make-new-thing 'hole (cons *world* (mapcar (lambda (it) (+ it .5)) cell))
+                               `((:size 1) (:score ,score) (:end ,(+ tick life))))))
+    (push (append cell (list (+ tick life))) *taken*)
+    (push hole *holes*)
+    (incf *opened*)
+    (incf *possible* score)
+    (run-kicker (set-kicker hole 'close-up) life)))
+
+(defkicker open-next (clock) (:prob 0)
+  (open-hole (simulation-tick))
+  (when (< *opened* holes*) (run-kicker self (roll-time 60 240))))
+
+(defmap tileworld (17 17)
+  (rect (0 0) (16 16) bricks 10)
+  (obj (clock :kickers (open-next)) (0.5 0.5) ((:size 1))))
+
+(defrobot tiler (tileworld (8.5 8.5) 0))
+
+(defmeasure effectiveness
+  "The score as a share of the scores of all holes, from 0 to 1."
+  (if (zerop *possible*) 0 (/ *score* *possible*)))
+
+(defmeasure filled "How many holes were filled." *filled*)
+
+;;; For agents: what they can see and do.
+
+(defun open-holes () "Return a list of the open holes, the newest first." *holes*)
+(defun hole-score (hole) "Return the score of HOLE, from 1 to 10." (get-attribute hole :score))
+(defun game-over-p () "True if all holes have closed." (and (<= holes* *opened*) (null *holes*)))
+
+(defun steps-between (x y to-x to-y)
+  (let ((dx (abs (round (- to-x x)))) (dy (abs (round (- to-y y)))))
+    (if (= 8 directions*) (max dx dy) (+ dx dy))))
+
+(defun steps-to (hole)
+  "Return how many steps the agent is from HOLE, which may have closed."
+  (steps-between (robot-x tiler) (robot-y tiler) (thing-x hole) (thing-y hole)))
+
+(defun fill-hole-here ()
+  (dolist (hole *holes*)
+    (when (zerop (steps-to hole))
+      (incf *score* (hole-score hole))
+      (incf *filled*)
+      (close-hole hole))))
+
+(defun direction-to (x y)
+  "Return the direction of a step from the agent towards the point X, Y."
+  (let ((dx (round (- x (robot-x tiler)))) (dy (round (- y (robot-y tiler)))))
+    (flet ((toward (columns rows)
+             (ecase (+ (* 3 (signum rows)) (signum columns))
+               (-4 :north-west) (-3 :north) (-2 :north-east) (-1 :west)
+               (1 :east) (2 :south-west) (3 :south) (4 :south-east))))
+      (cond ((= 8 directions*) (toward dx dy))
+            ((zerop dx) (toward 0 dy))
+            (t (toward dx 0))))))
+
+(defun take-a-step (direction then)
+  "Let the agent step in DIRECTION. At the end it fills a hole in its cell; then call THEN."
+  (robot-step tiler direction
+              (continuation (err robot)
+                (fill-hole-here)
+                (funcall then))))
+
+(defun step-towards (hole then)
+  "Let the agent take a step towards HOLE, which may have closed; then call the function THEN."
+  (take-a-step (direction-to (thing-x hole) (thing-y hole)) then))
+
+(defun spend-steps (steps then)
+  "Let the agent spend the time of so many STEPS without moving; then call the function THEN."
+  (think tiler (* steps (step-ticks-here))
+         (continuation (err robot) (fill-hole-here) (funcall then))))
+
+(defun plan-move (then)
+  "Let the agent plan, for PLANNING-TIME* steps; then call the function THEN."
+  (if (zerop planning-time*) (funcall then) (spend-steps planning-time* then)))
+
+(defun play-holes (agent)
+  "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
+  (setf step-duration* (step-ticks-here))
+  (robot-set-speed tiler max-speed*)
+  (robot-set-turn-angle tiler max-turn-angle*)
+  (run-ticks 1)
+  (run-kicker (first (thing-kickers (find-thing 'clock))) (roll-time 60 240))
+  (start-agent agent)
+  (loop until (game-over-p) do (run-ticks 100))
+  t)
+
+;;; The published agents. They choose the hole with the highest score for its distance, plan, and
+;;; go there. They plan again when they have arrived; after BOLDNESS steps, if not NIL; or because
+;;; of a REACTION: :TARGET, the hole has gone; :NEARER, that, or a nearer hole opened; :ANY, that,
+;;; or any hole opened.
+
+(defun worth (hole) (/ (hole-score hole) (max 1 (steps-to hole))))
+
+(defun best-hole (&optional (value #'worth))
+  "Return the open hole with the highest VALUE, of equals the newest; NIL if none is open."
+  (let ((best nil) (most nil))
+    (dolist (hole *holes* best)
+      (let ((worth (funcall value hole)))
+        (when (or (null best) (> worth most)) (setf best hole most worth))))))
+
+(defun newest () (if *holes* (thing-serial (first *holes*)) 0))
+
+(defun react-p (reaction target seen)
+  "True if an agent with REACTION gives up going to TARGET. SEEN is the last hole that it knew of."
+  (flet ((new-p (hole) (< seen (thing-serial hole))))
+    (and reaction
+         (or (not (thing-alive-p target))
+             (case reaction
+               (:nearer (some (lambda (hole)
+                                (and (new-p hole) (< (steps-to hole) (steps-to target))))
+                              *holes*))
+               (:any (some #'new-p *holes*)))))))
+
+(defun go-committed (target left seen boldness reaction value)
+  "Go to TARGET, for LEFT steps if that is a number; then decide again."
+  (if (or (eql 0 left) (zerop (steps-to target)) (react-p reaction target seen))
+      (decide boldness reaction value)
+      (let ((seen (max seen (newest))))
+        (step-towards target
+                      (lambda ()
+                        (go-committed target (and left (1- left)) seen boldness reaction
+                                      value))))))
+
+(defun decide (boldness reaction &optional (value #'worth))
+  "Choose a hole by VALUE, plan, and go there."
+  (let ((target (best-hole value)) (seen (newest)))
+    (if target
+        (plan-move (lambda () (go-committed target boldness seen boldness reaction value)))
+        (spend-steps 1 (lambda () (decide boldness reaction value))))))
+
+(defun cautious () (decide 1 nil))
+(defun cautious-target () (decide 1 :target))
+(defun cautious-nearer () (decide 1 :nearer))
+(defun cautious-any () (decide 1 :any))
+(defun normal () (decide 4 nil))
+(defun normal-target () (decide 4 :target))
+(defun normal-nearer () (decide 4 :nearer))
+(defun normal-any () (decide 4 :any))
+(defun bold () (decide nil nil))
+(defun bold-target () (decide nil :target))
+(defun bold-nearer () (decide nil :nearer))
+(defun bold-any () (decide nil :any))
+
+;;; Others.
+
+(defun random-walk ()
+  "Step in a random direction, again and again."
+  (let ((dice (ars-magna.base:make-dice (+ (world-seed *world*) (simulation-tick)) "walk"))
+        (x (robot-x tiler)) (y (robot-y tiler)))
+    (take-a-step (loop for (direction dx dy) = (roll-element '((:north 0 -1) (:south 0 1)
+                                                               (:east 1 0) (:west -1 0))
+                                                             dice)
+                       when (and (< 1 (+ x dx) 16) (< 1 (+ y dy) 16)) return direction)
+                 #'random-walk)))
+
+(defun naive () (decide nil nil (lambda (hole) (- (steps-to hole)))))
+
+(defun adaptive (&optional target)
+  "Plan again when the best hole, after planning, is worth more than what is left of the way."
+  (let ((best (best-hole (lambda (hole) (/ (hole-score hole)
+                                           (+ planning-time* (max 1 (steps-to hole))))))))
+    (cond ((and target (thing-alive-p target)
+                (>= (worth target)
+                    (/ (hole-score best) (+ planning-time* (max 1 (steps-to best))))))
+           (step-towards target (lambda () (adaptive target))))
+          (best (plan-move (lambda () (adaptive-go best))))
+          (t (spend-steps 1 #'adaptive)))))
+
+(defun adaptive-go (target)
+  (if (thing-alive-p target)
+      (step-towards target (lambda () (adaptive target)))
+      (adaptive)))
+
+(define-testbed tileworld
+  "Holes open and close on a floor, and an agent scores by reaching them in time. When should it
+plan again?"
+  (:rules "holes")
+  (:sources "Kinny and Georgeff")
+  (:knobs dynamism* planning-time* holes* directions*)
+  (:agents (random-walk "Steps anywhere.")
+           (naive "Goes to the nearest hole.")
+           (bold "Carries out each plan to its end.")
+           (normal "Plans again after 4 steps.")
+           (cautious "Plans again after each step.")
+           (adaptive "Plans again when another hole is worth it.")) 
+  (:robots tiler)
+  (:clean)
+  (:thinking :charged)
+  (:limit 1000000)
+  (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t))
+  (:run (play-holes agent))
+  (:score effectiveness)
+  (:measure filled)
+  (:seeds :tuning 1000000 :testing 0)
+  (:claims ("t" (((planning-time* 4) (dynamism* 32))) (:better bold normal .01) (:better normal cautious .01))))
