@@ -175,7 +175,7 @@
    (:module "src/experiment/replay" :serial t
     :components ((:file "replaying") (:file "failures")))
    (:module "src/experiment/testbed" :serial t
-    :components ((:file "testbed") (:file "running") (:file "claims")))
+    :components ((:file "testbed") (:file "running") (:file "claims") (:file "page")))
    (:module "src" :components ((:file "all"))))
   ;; The packages are locked once they are loaded.
   :perform (prepare-op (operation system)
@@ -200,9 +200,9 @@
                  (:file "plans-handling")
                  (:file "plans-errands") (:file "plans-locks") (:file "trials")
                  (:file "plans-searching")
-                 (:file "going") (:file "errand") (:file "experiments") (:file "choosing")
-                 (:module "testbeds" :serial t
-                  :components ((:file "package") (:file "tileworld-holes")))))))
+                 (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))
+   (:module "worlds/testbeds" :serial t
+    :components ((:file "package") (:file "tileworld-holes") (:file "tileworld-foresight")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"
@@ -243,7 +243,8 @@
                    (:file "other-runs")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "experiments") (:file "spreading")
-                   (:file "experiment-command") (:file "scripts") (:file "main")))))))
+                   (:file "experiment-command") (:file "testbeds") (:file "scripts")
+                   (:file "main")))))))
 
 (defsystem "ars-magna/clim"
   :description "The displays in a window."
@@ -424,7 +425,7 @@
                  (:file "experiments-tables") (:file "designs") (:file "experiments-files")
                  (:file "experiments-hanging") (:file "experiments-fingerprints")
                  (:file "experiments-series") (:file "experiments-series-tables")
-                 (:file "thinking-experiments")
+                 (:file "thinking-experiments") (:file "tileworld-bare") (:file "testbeds")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

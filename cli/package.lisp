@@ -62,6 +62,9 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:call-with-page-width
                 #:compare-conditions #:compare-levels #:compare-results #:save-comparison-picture
                 #:shard-directory #:directories-with-rows #:count-rows #:shard-has-trials-p
-                #:missing-shards #:check-same-code)
+                #:missing-shards #:check-same-code
+                #:testbed #:find-testbed #:all-testbeds #:testbed-name #:testbed-agents
+                #:testbed-knobs #:testbed-score #:run-testbed #:save-testbed-pages
+                #:write-testbed-list #:agent-p)
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string #:stream-read-char))

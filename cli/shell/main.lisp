@@ -5,7 +5,8 @@
 (defparameter *shell-commands*
   '(("experiment" experiment-command)
     ("merge" merge-command)
-    ("compare" compare-command))
+    ("compare" compare-command)
+    ("testbed" testbed-command))
   "Lists (name function) of commands. The function takes the command's arguments, a list of strings,
 and returns the exit status. The file usage-NAME.txt describes the command.")
 

@@ -105,6 +105,7 @@ OTHERS is true, an argument that is not an option becomes (:other argument). Sig
 
 (defparameter *shell-texts*
   (loop for name in '("usage.txt" "usage-experiment.txt" "usage-merge.txt" "usage-compare.txt"
+                      "usage-testbed.txt"
                       "spread-parallel.sh" "spread-slurm.sh")
         collect (list name (file-text (asdf:system-relative-pathname
                                        "ars-magna" (format nil "cli/shell/~A" name)))))

@@ -73,8 +73,15 @@
     (reject-argument operator name (abridged value) (values-expected-text value))))
 
 (defun copied-value (value)
-  "Return VALUE, or a copy of it if it is a list, vector or string, which users may modify."
-  (if (typep value '(or cons vector)) (copy-argument 'setf "value" value) value))
+  "Return VALUE, valid as a value, or a copy if it is a list, vector or string, which users may
+modify."
+  (declare #.*hot*)
+  (typecase value
+    (cons (loop for element in value
+                collect (if (typep element '(or cons vector)) (copied-value element) element)))
+    (simple-vector (cl:map 'simple-vector #'copied-value value))
+    (string (copy-seq value))
+    (t value)))
 
 ;;; Initial values. They belong to the run, but are not in digests.
 

@@ -6,7 +6,8 @@
   ;; Tileworld with holes only
   (:export #:tileworld #:tiler #:dynamism* #:planning-time* #:holes* #:directions*
            #:effectiveness #:filled
-           #:open-holes #:hole-score #:steps-to #:game-over-p #:plan-move #:step-towards #:play-holes
+           #:open-holes #:hole-score #:steps-to #:game-over-p #:plan-move #:step-towards
+           #:play-holes
            #:random-walk #:naive #:cautious #:normal #:bold #:adaptive #:look-ahead #:omniscient
            #:cautious-target #:normal-target #:bold-target #:cautious-nearer #:normal-nearer
            #:bold-nearer #:cautious-any #:normal-any #:bold-any))

@@ -8,7 +8,7 @@
 (in-readtable :nisp)
 
 (define-knob dynamism* 32 "world units" (integer 1 1000)
-  "How fast the world is: how many units of its clock pass while the agent takes a step (gamma).")
+  "How many units of the world's clock pass while the agent takes a step (gamma).")
 (define-knob planning-time* 1 "steps" (real 0 100)
   "How long the agent plans, in the time of a step (p). It pays by THINK.")
 (define-knob holes* 600 "holes" (integer 1 100000) "How many holes open in a game.")
@@ -17,7 +17,7 @@
 ;;; The world.
 
 (define-run-variable *holes* '() "The open holes, things, the newest first.")
-(define-run-variable *taken* '() "Lists (x y end): cells that have a hole, filled or not, until END.")
+(define-run-variable *taken* '() "Lists (x y end): cells of holes, filled or not, until END.")
 (define-run-variable *opened* 0 "How many holes have opened.")
 (define-run-variable *possible* 0 "The sum of the scores of the holes that have opened.")
 (define-run-variable *score* 0 "The sum of the scores of the holes that were filled.")
@@ -47,7 +47,8 @@
   "Open a hole. What opens depends on the seed only, not on what the agent does."
   (let* ((life (roll-time 240 960)) (score (roll-up 1 10)) (cell (cell-for-hole tick))
          (hole (make-new-thing 'hole (cons *world* (mapcar (lambda (it) (+ it .5)) cell))
-                               `((:size 1) (:score ,score) (:end ,(+ tick life))))))
+                               `((:size 1) (:score ,score) (:begin ,tick)
+                                 (:end ,(+ tick life))))))
     (push (append cell (list (+ tick life))) *taken*)
     (push hole *holes*)
     (incf *opened*)
@@ -58,9 +59,11 @@
   (open-hole (simulation-tick))
   (when (< *opened* holes*) (run-kicker self (roll-time 60 240))))
 
-(defmap tileworld (17 17)
+;; The clock stands in a cell of its own.
+(defmap tileworld (19 17)
   (rect (0 0) (16 16) bricks 10)
-  (obj (clock :kickers (open-next)) (0.5 0.5) ((:size 1))))
+  (rect (16 0) (18 2) bricks 10)
+  (obj (clock :kickers (open-next)) (17.5 1.5) ((:size 1))))
 
 (defrobot tiler (tileworld (8.5 8.5) 0))
 
@@ -220,25 +223,78 @@
       (step-towards target (lambda () (adaptive target)))
       (adaptive)))
 
+;;; The testbed.
+
 (define-testbed tileworld
   "Holes open and close on a floor, and an agent scores by reaching them in time. When should it
-plan again?"
-  (:rules "holes")
-  (:sources "Kinny and Georgeff")
+plan again? Tileworld without tiles, as Kinny and Georgeff simplified it."
+  (:rules "The floor has 15 x 15 cells. The agent starts in the middle."
+          "A hole has a score from 1 to 10. It opens 60 to 240 world units after the hole before,
+in a cell without a hole, and closes after 240 to 960 units. All are uniform."
+          "A step takes dynamism* units. At its end, or that of a thought or a wait, the agent
+fills the hole in its cell and gets the score."
+          "Agents choose the hole with the highest score for its distance, plan, and go there, first
+along x. Without a hole they look again after the time of a step."
+          "Effectiveness is the sum of the scores of the filled holes as a share of those of all
+holes. All agents meet the same holes.")
+  (:sources "Kinny and Georgeff, Commitment and effectiveness of situated agents, IJCAI-91."
+            "Schut and Wooldridge, Intention reconsideration in complex environments, Agents 2000."
+            "Pollack and Ringuette, Introducing the Tileworld, AAAI-90.")
   (:knobs dynamism* planning-time* holes* directions*)
-  (:agents (random-walk "Steps anywhere.")
-           (naive "Goes to the nearest hole.")
-           (bold "Carries out each plan to its end.")
-           (normal "Plans again after 4 steps.")
+  (:agents (random-walk "Steps in random directions.")
+           (naive "Goes to the nearest hole, whatever its score, and is blind on the way.")
            (cautious "Plans again after each step.")
-           (adaptive "Plans again when another hole is worth it.")) 
+           (normal "Plans again after 4 steps.")
+           (bold "Plans again when it has arrived, and is blind on the way.")
+           (cautious-target "Cautious, and plans again when its hole has gone.")
+           (normal-target "Normal, and plans again when its hole has gone.")
+           (bold-target "Bold, but plans again when its hole has gone.")
+           (cautious-nearer "Cautious, and plans again also when a nearer hole has opened.")
+           (normal-nearer "Normal, and plans again also when a nearer hole has opened.")
+           (bold-nearer "Bold, but plans again also when a nearer hole has opened.")
+           (cautious-any "Cautious, and plans again also when any hole has opened.")
+           (normal-any "Normal, and plans again also when any hole has opened.")
+           (bold-any "Bold, but plans again also when any hole has opened.")
+           (adaptive "Plans again when a hole, after planning, is worth more than its own.")
+           (look-ahead "Tries each hole in forks of the run; it pays for planning as others do.")
+           (omniscient "The upper bound: it knows all holes in advance, and plans without cost."))
   (:robots tiler)
   (:clean)
   (:thinking :charged)
-  (:limit 1000000)
+  (:limit 10000000)
   (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t))
   (:run (play-holes agent))
   (:score effectiveness)
   (:measure filled)
   (:seeds :tuning 1000000 :testing 0)
-  (:claims ("t" (((planning-time* 4) (dynamism* 32))) (:better bold normal .01) (:better normal cautious .01))))
+  (:sweeps ((dynamism* 8 16 32 64 128) (planning-time* 1))
+           ((planning-time* 0 1/2 1 2 4) (dynamism* 32)))
+  (:claims
+   ("If planning takes 4 steps, bold is better than normal, and normal than cautious."
+    (((planning-time* 4) (dynamism* 16)) ((planning-time* 4) (dynamism* 32)))
+    (:better bold normal .04) (:better normal cautious .09))
+   ("The gap narrows as planning gets cheaper."
+    (((dynamism* 16)) ((dynamism* 32)))
+    (:narrows bold cautious (planning-time* 4 1)))
+   ("If planning takes 1 step, normal is better than bold in fast worlds."
+    (((planning-time* 1) (dynamism* 32)) ((planning-time* 1) (dynamism* 64)))
+    (:better normal bold .005))
+   ("If planning takes half a step, cautious and bold are about equal in fast worlds."
+    (((planning-time* 1/2) (dynamism* 32)) ((planning-time* 1/2) (dynamism* 64)))
+    (:within cautious bold .04))
+   ("If planning takes no time, cautious is best."
+    (((planning-time* 0) (dynamism* 32)) ((planning-time* 0) (dynamism* 64)))
+    (:better cautious normal .02) (:better cautious bold .08))
+   ("In fast worlds it helps to react when the hole has gone, and more to react to nearer holes."
+    (((planning-time* 1) (dynamism* 24)) ((planning-time* 1) (dynamism* 64)))
+    (:better bold-target bold .025) (:better bold-nearer bold-target .02))
+   ("If planning takes 2 steps, it is worse to react to any hole than to be blind."
+    (((planning-time* 2) (dynamism* 24)) ((planning-time* 2) (dynamism* 64)))
+    (:better bold bold-any .04) (:better cautious cautious-any .02))
+   ("Once agents react, bold is best if planning takes a step or more."
+    (((planning-time* 1) (dynamism* 32)) ((planning-time* 2) (dynamism* 32))
+     ((planning-time* 4) (dynamism* 32)))
+    (:better bold-nearer normal-nearer .03) (:better bold-nearer cautious-nearer .1))
+   ("If planning takes no time, the adaptive agent is not worse than cautious or bold."
+    (((planning-time* 0) (dynamism* 16)) ((planning-time* 0) (dynamism* 64)))
+    (:not-worse adaptive cautious .01) (:not-worse adaptive bold .01))))

@@ -2,8 +2,6 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(claim-row-text))
-
 ;;; The same seed gives all agents the same world, so scores are compared in pairs. The claims of a
 ;;; testbed are those published; a claim that does not hold is reported, not tuned to.
 
@@ -39,16 +37,21 @@
 (defun within-p (row margin)
   (<= (- margin) (getf row :difference) margin))
 
+(defun not-worse-p (row margin)
+  (<= (- margin) (or (getf row :low) (getf row :difference))))
+
 (defun score-differences (scores a b)
   (mapcar #'- (rest (assoc a scores)) (rest (assoc b scores))))
 
 (defun simple-row (relation scores)
-  "Return a row for RELATION, :BETTER or :WITHIN, by SCORES."
+  "Return a row for RELATION, of another kind than :NARROWS, by SCORES."
   (destructuring-bind (kind a b margin) relation
     (let ((row (paired-row (score-differences scores a b))))
-      (append row (list :holds (if (eq kind :better)
-                                   (better-by-p row margin)
-                                   (within-p row margin)))))))
+      (append row (list :holds (funcall (ecase kind
+                                           (:better #'better-by-p)
+                                           (:within #'within-p)
+                                           (:not-worse #'not-worse-p))
+                                         row margin))))))
 
 (defun narrowing-row (relation scores-of)
   "Return a row for RELATION, (:narrows a b (knob from to)). SCORES-OF is a function of settings."
@@ -64,6 +67,7 @@
       (ecase kind
         (:better (format nil "~(~A~) - ~(~A~), at least ~A" a b (value-text more)))
         (:within (format nil "~(~A~) - ~(~A~), within ~A" a b (value-text more)))
+        (:not-worse (format nil "~(~A~) - ~(~A~), interval above -~A" a b (value-text more)))
         (:narrows (format nil "(~(~A~) - ~(~A~)) from ~(~A~) ~A to ~A" a b (first more)
                           (value-text (second more)) (value-text (third more))))))))
 
@@ -99,6 +103,7 @@ property lists, one for each relation under each setting:
 The relations are
   (:better a b margin)        the agent A scores at least MARGIN more than B
   (:within a b margin)        the scores of A and B differ by at most MARGIN; p does not count
+  (:not-worse a b margin)     the interval of the difference lies above -MARGIN; p does not count
   (:narrows a b (knob v w))   A is less ahead of B when KNOB is W than when it is V
 CLAIMS is a list of the numbers of claims to check, from 1. Signals UNKNOWN-NAME, and MISUSE if an
 agent has an error."

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(write-testbed-list))
+
 (addition start-agent)
 (defun start-agent (agent)
   "Start AGENT, the name of a plan or function, in the current simulation: begin the plan, or call
@@ -69,10 +71,10 @@ RUN-EXPERIMENT. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and the errors of RUN-EXPE
                          stream)
   (write-testbed-section "Claims" (mapcar #'first (testbed-claims testbed)) stream)
   (write-testbed-section "Sources" (testbed-sources testbed) stream)
-  (destructuring-bind (&key tuning testing) (testbed-seeds testbed)
-    (write-testbed-section "Seeds" (list (format nil "for tuning from ~D on; for testing from ~D on"
-                                                 (1+ tuning) (1+ testing)))
-                           stream)))
+  (write-testbed-section "Seeds"
+                         (list (format nil "for tuning from ~D on; for testing from ~D on"
+                                       (1+ (first-seed testbed t)) (1+ (first-seed testbed nil))))
+                         stream))
 
 (addition testbed)
 (defun testbed (name &optional (stream *standard-output*))

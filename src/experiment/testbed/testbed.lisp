@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(testbed-experiment write-testbed-list))
+(export '(testbed-experiment agent-p))
 
 ;;; The manual measures itself against the testbeds of its time (1.2, 1.3). A testbed is an
 ;;; experiment whose factor AGENT has the agents as values. So its trials, tables, comparisons and
@@ -29,9 +29,12 @@
   (options nil function "a function that returns options of EXPERIMENT-FROM-OPTIONS"))
 
 (defmethod print-object ((testbed testbed) stream)
-  (print-named testbed stream (testbed-name testbed) (format nil "TESTBED ~A" (testbed-name testbed))))
+  (print-named testbed stream (testbed-name testbed)
+               (format nil "TESTBED ~A" (testbed-name testbed))))
 
 (define-registry testbed "testbed" :object-p testbed-p :by-symbol t)
+
+(defmethod affects-trials-p ((testbed testbed)) nil)
 
 ;;; Defining.
 
@@ -52,7 +55,7 @@
                             (every (lambda (part) (typep part type)) parts))))
       (ecase (first clause)
         ((:rules :sources) (all 'string))
-        (:knobs (and (all 'symbol) (every #'parameter-of-variable parts)))
+        (:knobs (all '(and symbol (not null))))
         (:agents (all '(cons (and symbol (not null)) (cons string null))))
         (:score (and (all '(and symbol (not null))) (null (rest parts))))
         (:seeds (typep parts '(cons (eql :tuning)
@@ -69,7 +72,8 @@
 
 (defun relation-valid-p (relation)
   "True if RELATION is one of those that CHECK-CLAIMS lists."
-  (typep relation '(or (cons (member :better :within) (cons symbol (cons symbol (cons real null))))
+  (typep relation '(or (cons (member :better :within :not-worse)
+                            (cons symbol (cons symbol (cons real null))))
                     (cons (eql :narrows) (cons symbol (cons symbol (cons cons null)))))))
 
 (defun testbed-clause (key clauses)
@@ -127,19 +131,28 @@ Signals MALFORMED-DEFINITION."
          (check-all-clauses definition name experiment)
          (list (testbed-registration name documentation definition clauses experiment form)))))))
 
+(defun check-knobs-defined (definition knobs)
+  "Signal MALFORMED-DEFINITION unless KNOBS are names of parameters."
+  (dolist (knob knobs)
+    (unless (parameter-of-variable knob)
+      (reject-clause definition knob "a parameter; (define-knob NAME ...) defines one"))))
+
 (defun testbed-registration (name documentation definition clauses experiment form)
-  `(register *testbeds* ',name
-             (make-testbed
-              :name ',name :documentation ,documentation :title ,definition
-              :score ',(first (testbed-clause :score clauses))
-              ,@(loop for key in '(:rules :sources :knobs :agents :seeds :sweeps :claims)
-                      collect key
-                      collect `',(testbed-clause key clauses))
-              :form ',form
-              :deciding ',(trial-affecting-clauses experiment)
-              ;; Without the operator and the name.
-              :options (lambda ()
-                         (list ,@(cddr (definition-form name documentation experiment form)))))))
+  `(progn
+     (check-knobs-defined ,definition ',(testbed-clause :knobs clauses))
+     (register *testbeds* ',name
+               (make-testbed
+                :name ',name :documentation ,documentation :title ,definition
+                :score ',(first (testbed-clause :score clauses))
+                ,@(loop for key in '(:rules :sources :knobs :agents :seeds :sweeps :claims)
+                        collect key
+                        collect `',(testbed-clause key clauses))
+                :form ',form
+                :deciding ',(trial-affecting-clauses experiment)
+                ;; Without the operator and the name.
+                :options (lambda ()
+                           (list ,@(cddr (definition-form name documentation experiment
+                                           form))))))))
 
 (addition define-knob)
 (define-user-macro define-knob (name default unit type documentation)
@@ -149,16 +162,18 @@ WITH-SIMULATION can bind it, journals record it. Define knobs when a file is loa
 run. Return NAME. Signals MALFORMED-DEFINITION."
   (let ((definition (definition-title "define-knob" name)))
     (unless (and name (symbolp name) (users-symbol-p name)
-                 (or (parameter-of-variable name) (null (variable-kind name))))
+                 (member (variable-kind name) '(nil :special)))
       (reject-clause definition name "a symbol that is no other variable"))
     (unless (and (stringp unit) (stringp documentation))
       (reject-clause definition (list unit documentation) "a unit and a sentence, two strings"))
     (unless (typep type '(or (cons (member real integer) (cons real (cons real null)))
                           (cons (eql member) cons) (eql boolean)))
-      (reject-clause definition type "(real low high), (integer low high), (member ...) or boolean"))
+      (reject-clause definition type
+                     "(real low high), (integer low high), (member ...) or boolean"))
     (unless (typep default type)
       (reject-clause definition default (format nil "a default of the type ~(~S~)" type)))
-    `(eval-when (:compile-toplevel :load-toplevel :execute)
+    `(progn
+       (eval-when (:compile-toplevel) (proclaim '(special ,name)))
        (define-parameter ,name ,default
            (:unit ,unit :type ,type :kind :setting :group "Testbeds" :addition t)
          ,documentation))))
@@ -180,11 +195,15 @@ run. Return NAME. Signals MALFORMED-DEFINITION."
 (defun reseeded-clauses (clauses seed)
   (substitute-if (list :seed seed) (lambda (clause) (eq :seed (first clause))) clauses))
 
+(defun first-seed (testbed tuning)
+  "Return the seed before the first of TESTBED, for tuning if TUNING is true, else for testing."
+  (or (getf (testbed-seeds testbed) (if tuning :tuning :testing)) 0))
+
 (defun testbed-experiment (testbed agents &key settings sweep tuning)
   "Return an experiment on AGENTS in TESTBED. SETTINGS are lists (knob value). SWEEP, a list (knob
 value...), varies a knob. Use the seeds for tuning if TUNING is true, else those for testing."
   (let* ((options (let ((*package* (testbed-package testbed))) (funcall (testbed-options testbed))))
-         (seed (getf (testbed-seeds testbed) (if tuning :tuning :testing)))
+         (seed (first-seed testbed tuning))
          (variable (first (getf options :variables)))
          (experiment
            (apply #'experiment-from-options (testbed-name testbed) (testbed-title testbed)

@@ -117,10 +117,15 @@ and an empty table are not noted, because variables for data often have such val
                  (when number
                    (note-part :variable (qualified-symbol-name symbol) number reach))))))))
 
-;; Experiments are skipped: their factors and numbers of trials do not affect a trial.
+(defgeneric affects-trials-p (definition)
+  (:documentation "True if DEFINITION, an object, can affect a trial that refers to its name. The
+factors and numbers of trials of an experiment do not.")
+  (:method (definition) (declare (ignore definition)) t)
+  (:method ((experiment experiment)) nil))
+
 (defun visit-definition (entry reach)
   (let ((object (entry-object entry)))
-    (when (and (not (experiment-p object)) (users-entry-p entry) (first-visit-p entry reach))
+    (when (and (affects-trials-p object) (users-entry-p entry) (first-visit-p entry reach))
       (note-part (type-of object) (qualified-symbol-name (entry-name entry))
                  (or (entry-digest entry) 0) reach)
       (let ((file (source-file (entry-source entry))))
@@ -160,9 +165,10 @@ and an empty table are not noted, because variables for data often have such val
     (dolist (method (methods-on-class symbol)) (visit-function (method-code method) symbol reach))
     (loop for (file written) in (files-of-other-definitions symbol)
           do (note-file file written reach))
-    ;; Some variables are set and never declared.
+    ;; Some variables are set and never declared. The values of parameters are the condition's.
     (when (and (null entries)
                (member (variable-kind symbol) '(nil :special :global))
+               (not (parameter-of-variable symbol))
                (ignore-errors (global-value symbol) t))
       (visit-variable symbol reach))))
 

@@ -1,0 +1,124 @@
+;;;; testbeds.lisp -- testbeds: how they are defined and run, and what is claimed of Tileworld.
+
+(in-package :ars-magna.tests)
+
+(def-suite* testbeds :in ars-magna)
+
+(defun agent-symbol (name) (find-symbol (string name) :ars-testbeds))
+
+(defun knob-settings (settings)
+  (loop for (name value) in settings collect (list (agent-symbol name) value)))
+
+(defun tileworld-scores (agent settings &key (seeds 5))
+  "Return the scores of AGENT, by seed."
+  (let* ((results (experiment:run-testbed 'tileworld :agents (list (agent-symbol agent))
+                                                     :knobs (knob-settings settings)
+                                                     :seeds seeds :stream nil))
+         (sample (first (experiment:results-samples results))))
+    (is (every (lambda (text) (string= "" text)) (experiment:sample-errors sample)))
+    (coerce (experiment:sample-measure results sample "effectiveness") 'list)))
+
+(defun tileworld-holes (seed settings)
+  "Return the holes of a game with SEED, lists (x y score begin end)."
+  (run:with-simulation ('ars-testbeds:tiler :seed seed :clean t
+                                            :parameters (knob-settings settings))
+    (run:run-ticks 1)
+    (world:run-kicker (first (world:thing-kickers (world:find-thing 'clock)))
+                      (ars-testbeds::roll-time 60 240))
+    (ars-testbeds::future-holes)))
+
+(test tileworld.plays-as-a-program-without-the-simulator
+  "The same holes, the same rules: the same scores, whatever planning costs. Nothing is rounded."
+  (loop for (agent boldness reaction gamma p directions)
+          in '((bold nil nil 32 1 4) (cautious 1 nil 32 1/2 4) (normal-any 4 :any 24 2 4)
+               (bold-nearer nil :nearer 21 1/2 8) (bold-target nil :target 8 4 8)
+               (cautious-nearer 1 :nearer 2 1 4))
+        for settings = `((dynamism* ,gamma) (planning-time* ,p) (directions* ,directions)
+                         (holes* 120))
+        do (loop for score in (tileworld-scores agent settings :seeds 3)
+                 for seed from 1
+                 for bare = (bare-effectiveness (tileworld-holes seed settings)
+                                                gamma p boldness reaction directions)
+                 do (is (< (abs (- score bare)) 1d-9) "~A, seed ~D: ~A, bare ~A" agent seed
+                        score bare))))
+
+(test tileworld.holes-do-not-depend-on-the-agent
+  (flet ((possible (agent)
+           (run:with-simulation ('ars-testbeds:tiler :seed 4 :clean t
+                                                     :parameters '((ars-testbeds:holes* 40)))
+             (ars-testbeds:play-holes (agent-symbol agent))
+             (list ars-testbeds::*possible* ars-testbeds::*opened*))))
+    (is (equal (possible 'bold) (possible 'random-walk)))))
+
+(test tileworld.no-agent-beats-the-bound
+  (dolist (gamma '(16 48))
+    (let* ((settings `((dynamism* ,gamma) (planning-time* 0) (holes* 60)))
+           (bound (tileworld-scores 'omniscient settings :seeds 3)))
+      (dolist (agent '(bold-nearer cautious adaptive look-ahead))
+        (is (every #'<= (tileworld-scores agent settings :seeds 3) bound) "~A" agent)))
+    (is (every #'= (tileworld-scores 'omniscient `((dynamism* 8) (holes* 60))) '(1 1 1 1 1)))))
+
+(test tileworld.looking-ahead-helps
+  (let ((settings '((dynamism* 32) (planning-time* 0) (holes* 60))))
+    (is (< (reduce #'+ (tileworld-scores 'cautious settings))
+           (reduce #'+ (tileworld-scores 'look-ahead settings))))))
+
+(test tileworld.claims-hold
+  "The published statements, on fewer seeds than on the page of results."
+  (dolist (row (experiment:check-claims 'tileworld :seeds 8))
+    (is (getf row :holds) "~S" row)))
+
+;;; The face.
+
+(test testbed.tells-its-rules
+  (let ((text (with-output-to-string (out) (experiment:testbed 'tileworld out))))
+    (dolist (part '("Rules" "15 x 15" "dynamism*, an integer from 1 to 1000 world units"
+                    "bold-nearer:" "Kinny" "Seeds"))
+      (is (search part text) "~A" part))))
+
+(test testbed.refuses-what-it-does-not-know
+  (signals base:unknown-name (experiment:run-testbed 'tyleworld))
+  (signals base:unknown-name (experiment:run-testbed 'tileworld :agents '(boldest)))
+  (signals base:wrong-argument (experiment:run-testbed 'tileworld :agents 'bold))
+  (signals base:unknown-name (experiment:run-testbed 'tileworld :knobs '((max-speed* 1))))
+  (signals base:malformed-definition
+    (experiment:run-testbed 'tileworld :agents '(ars-testbeds:bold)
+                                       :knobs '((ars-testbeds:directions* 5)))))
+
+(test testbed.runs-an-agent-of-the-user
+  "A plan is an agent, too, and the seeds for tuning are others than those for testing."
+  (with-own-definitions
+    (eval '(rpl:def-interp-proc stand-still () (rpl:wait-time 10)))
+    (flet ((rows (&rest options)
+             (let* ((results (apply #'experiment:run-testbed 'tileworld
+                                    :agents (list 'stand-still 'ars-testbeds:bold)
+                                    :knobs '((ars-testbeds:holes* 10))
+                                    :seeds 2 :stream nil options)))
+               (mapcar (lambda (sample)
+                         (coerce (experiment:sample-measure results sample "effectiveness")
+                                 'list))
+                       (experiment:results-samples results)))))
+      (is (equal '(0 0) (first (rows))))
+      (is (not (equal (rows) (rows :tuning t)))))))
+
+(test testbed.page-is-the-same-for-any-number-of-workers
+  (with-own-definitions
+    (let ((testbed (experiment:find-testbed 'tileworld)))
+      (flet ((page (workers)
+               (with-output-to-string (out)
+                 (with-directories (directory)
+                   (ars-magna.experiment::write-testbed-page
+                    (ars-magna.experiment::make-testbed
+                     :name 'tileworld :documentation "d" :rules '("r") :knobs '()
+                     :agents '((ars-testbeds:bold "b") (ars-testbeds:naive "n"))
+                     :score 'ars-testbeds:effectiveness
+                     :seeds '(:tuning 10 :testing 0)
+                     :sweeps '(((ars-testbeds:dynamism* 16 64) (ars-testbeds:holes* 10)))
+                     :package (find-package :ars-testbeds)
+                     :title "t"
+                     :deciding (ars-magna.experiment::testbed-deciding testbed)
+                     :options (ars-magna.experiment::testbed-options testbed))
+                    out directory 3 workers)))))
+        (let ((page (page 1)))
+          (is (search "| bold | " page))
+          (is (string= page (page 2))))))))
