@@ -3,11 +3,8 @@
 (ars:define-user-package :ars-testbeds
   (:documentation "Testbeds: worlds with rules, knobs, scores and agents, written as you would write
   your own.")
-  ;; Tileworld with holes only
+  ;; Tileworld with holes only. Agents are named in the testbed.
   (:export #:tileworld #:tiler #:dynamism* #:planning-time* #:holes* #:directions*
            #:effectiveness #:filled
            #:open-holes #:hole-score #:steps-to #:game-over-p #:plan-move #:step-towards
-           #:play-holes
-           #:random-walk #:naive #:cautious #:normal #:bold #:adaptive #:look-ahead #:omniscient
-           #:cautious-target #:normal-target #:bold-target #:cautious-nearer #:normal-nearer
-           #:bold-nearer #:cautious-any #:normal-any #:bold-any))
+           #:spend-steps #:play-holes))

@@ -1,42 +1,39 @@
-;;;; tileworld-foresight.lisp -- two agents of Tileworld that look ahead: by forks; and with a
-;;;; knowledge that no agent has, for an upper bound.
+;;;; tileworld-foresight.lisp -- two agents of Tileworld: one forks, the other knows the future.
 
 (in-package :ars-testbeds)
 (in-readtable :nisp)
 
-;;; Looking ahead: the agent tries each hole in a fork of the run, goes on there as BOLD-NEARER, and
-;;; takes the hole with the highest score in the time of HORIZON steps. Forks have other dice than
-;;; the run, so they open other holes.
+;;; Looking ahead. The agent tries each hole in a fork of the run in which no more holes open: it
+;;; goes there, then on as BOLD-NEARER. Scores are read at several times, so earlier ones count more.
 
-(defun score-ahead (hole horizon seed)
-  (with-fork (:seed seed)
-    (let ((target (counterpart hole)) (before *score*))
-      (go-committed target nil (newest) nil :nearer #'worth)
-      (run-ticks (* horizon (step-ticks-here)))
-      (- *score* before))))
+(defun score-ahead (hole horizon)
+  "Return what HOLE as the first brings in HORIZON steps: the sum of four readings of the score."
+  (with-fork ()
+    (put-kicker open-next (clock (find-thing 'clock)))
+    (go-committed (counterpart hole) nil :nearer (newest) (lambda () (decide nil :nearer)))
+    (loop repeat 4
+          do (run-ticks (ceiling (* horizon (step-ticks-here)) 4))
+          sum *score*)))
 
-(defun look-ahead (&key (horizon 24) (forks 2))
-  "Play to the end of the game."
-  (let ((target nil) (busy nil))
-    (flet ((go-on () (setf busy nil)))
+(defun best-ahead (horizon)
+  "Return the open hole with the highest score in HORIZON steps, of equals the worthiest, or NIL."
+  (if (rest *holes*)
+      (best-hole (lambda (hole) (+ (score-ahead hole horizon) (/ (worth hole) 1000))))
+      (first *holes*)))
+
+(defun look-ahead (&key (horizon 24))
+  "Play to the end of the game. Forks are made between ticks, so the agent passes them itself."
+  (let ((idle t) (reaction (if (zerop planning-time*) :any :nearer)))
+    (flet ((rest-a-moment () (setf idle t)))
       (loop until (game-over-p)
-            do (cond (busy (run-ticks 1))
-                     ((null *holes*) (setf busy t) (spend-steps 1 #'go-on))
-                     (t (setf target (best-ahead horizon forks) busy t)
-                        (plan-move (lambda ()
-                                     (if (thing-alive-p target)
-                                         (step-towards target #'go-on)
-                                         (go-on))))))))))
-
-(defun best-ahead (horizon forks)
-  "Return the open hole with the highest score in FORKS of HORIZON steps; of equals the worthiest."
-  (let ((holes *holes*) (seed (simulation-tick)))
-    (if (rest holes)
-        (best-hole (lambda (hole)
-                     (+ (/ (worth hole) 1000)
-                        (loop for fork from 1 to forks
-                              sum (score-ahead hole horizon (+ fork seed))))))
-        (first holes))))
+            do (if idle
+                   (let ((target (best-ahead horizon)) (seen (newest)))
+                     (setf idle nil)
+                     (if target
+                         (plan-move (lambda ()
+                                      (go-committed target nil reaction seen #'rest-a-moment)))
+                         (spend-steps 1 #'rest-a-moment)))
+                   (run-ticks 1))))))
 
 ;;; An upper bound: the agent that knows all holes in advance, plans without cost, and takes the
 ;;; best of all tours. A hole is a list (x y score begin end), a stop a list (tick score hole before

@@ -163,22 +163,21 @@
                               *holes*))
                (:any (some #'new-p *holes*)))))))
 
-(defun go-committed (target left seen boldness reaction value)
-  "Go to TARGET, for LEFT steps if that is a number; then decide again."
+(defun go-committed (target left reaction seen then)
+  "Go to TARGET, for LEFT steps if that is a number, or until REACTION; then call THEN."
   (if (or (eql 0 left) (zerop (steps-to target)) (react-p reaction target seen))
-      (decide boldness reaction value)
+      (funcall then)
       (let ((seen (max seen (newest))))
-        (step-towards target
-                      (lambda ()
-                        (go-committed target (and left (1- left)) seen boldness reaction
-                                      value))))))
+        (step-towards target (lambda ()
+                               (go-committed target (and left (1- left)) reaction seen then))))))
 
 (defun decide (boldness reaction &optional (value #'worth))
-  "Choose a hole by VALUE, plan, and go there."
-  (let ((target (best-hole value)) (seen (newest)))
-    (if target
-        (plan-move (lambda () (go-committed target boldness seen boldness reaction value)))
-        (spend-steps 1 (lambda () (decide boldness reaction value))))))
+  "Choose a hole by VALUE, plan, go there, and so on."
+  (flet ((again () (decide boldness reaction value)))
+    (let ((target (best-hole value)) (seen (newest)))
+      (if target
+          (plan-move (lambda () (go-committed target boldness reaction seen #'again)))
+          (spend-steps 1 #'again)))))
 
 (defun cautious () (decide 1 nil))
 (defun cautious-target () (decide 1 :target))

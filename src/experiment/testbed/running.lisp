@@ -14,32 +14,45 @@ Return nothing. Signals UNKNOWN-NAME."
         (t (reject-name "agent" agent '())))
   (values))
 
+(defun resolve-agent (testbed name)
+  "Return the agent NAME: a plan or function of that very name, or else an agent of TESTBED."
+  (let ((names (mapcar #'first (testbed-agents testbed))))
+    (cond ((agent-p name) name)
+          ((and name (symbolp name) (find name names :test #'same-name-p)))
+          (t (reject-name "agent" name names)))))
+
+(defun resolve-knob (operator testbed setting)
+  "Return SETTING, a list (knob value), with the symbol of a knob of TESTBED."
+  (unless (typep setting 'named-form)
+    (reject-argument operator 'knobs setting "lists (knob value)"))
+  (list (or (find (first setting) (testbed-knobs testbed) :test #'same-name-p)
+            (reject-name "knob" (first setting) (testbed-knobs testbed)))
+        (second setting)))
+
 (addition run-testbed)
 (defun run-testbed (name &key agents knobs (seeds 100) tuning (workers 1) directory
                               (stream *error-output*))
-  "Run AGENTS, names of plans or functions, in the testbed NAME, all on the same SEEDS, a number of
-seeds. Return results, as RUN-EXPERIMENT does: the factor AGENT, and the score among the measures.
-By default all agents of the testbed run. KNOBS are lists (knob value). If TUNING is true, the seeds
-are those to write agents with, else those to test them. WORKERS, DIRECTORY and STREAM are as for
-RUN-EXPERIMENT. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT."
-  (let* ((testbed (find-testbed name))
-         (agents (or agents (mapcar #'first (testbed-agents testbed)))))
-    (check-agents 'run-testbed testbed agents)
-    (check-knobs 'run-testbed testbed knobs)
-    (run-experiment-object (testbed-experiment testbed agents :settings knobs :tuning tuning)
-                           seeds workers directory stream)))
+  "Run AGENTS in the testbed NAME, all on the same SEEDS, a number. Return results, as
+RUN-EXPERIMENT does: AGENT is a factor, and the score is the first measure. AGENTS are names of
+plans or functions, or of agents of the testbed; by default all of these. KNOBS are lists (knob
+value). If TUNING is true, the seeds are those to write agents with, else those to test them.
+WORKERS, DIRECTORY and STREAM are as for RUN-EXPERIMENT. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
+the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
+  (let ((testbed (find-testbed name)))
+    (unless (and (proper-list-p agents) (proper-list-p knobs))
+      (reject-argument 'run-testbed 'agents (list agents knobs) "lists of agents and of knobs"))
+    (run-experiment-object
+     (testbed-experiment testbed
+                         (loop for agent in (or agents (mapcar #'first (testbed-agents testbed)))
+                               collect (resolve-agent testbed agent))
+                         :settings (loop for setting in knobs
+                                         collect (resolve-knob 'run-testbed testbed setting))
+                         :tuning tuning)
+     seeds workers directory stream)))
 
 (defun run-experiment-object (experiment seeds workers directory stream)
   (run-experiment (experiment-name experiment) :trials seeds :workers workers
                   :directory directory :stream stream))
-
-(defun check-knobs (operator testbed knobs)
-  (unless (and (proper-list-p knobs)
-               (every (lambda (part) (typep part 'named-form)) knobs))
-    (reject-argument operator 'knobs knobs "lists (knob value)"))
-  (loop for (name) in knobs
-        do (unless (member name (testbed-knobs testbed))
-             (reject-name "knob" name (testbed-knobs testbed)))))
 
 ;;; Telling.
 

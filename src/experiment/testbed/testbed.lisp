@@ -185,13 +185,6 @@ run. Return NAME. Signals MALFORMED-DEFINITION."
   (and (symbolp name) name
        (or (find-procedure name nil) (and (fboundp name) (not (macro-function name))))))
 
-(defun check-agents (operator testbed agents)
-  (unless (and (proper-list-p agents) agents)
-    (reject-argument operator 'agents agents "a list of agents, names of plans or functions"))
-  (dolist (agent agents)
-    (unless (agent-p agent)
-      (reject-name "agent" agent (mapcar #'first (testbed-agents testbed))))))
-
 (defun reseeded-clauses (clauses seed)
   (substitute-if (list :seed seed) (lambda (clause) (eq :seed (first clause))) clauses))
 
