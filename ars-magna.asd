@@ -202,7 +202,8 @@
                  (:file "plans-searching")
                  (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))
    (:module "worlds/testbeds" :serial t
-    :components ((:file "package") (:file "tileworld-holes") (:file "tileworld-foresight")))))
+    :components ((:file "package") (:file "tileworld-holes") (:file "tileworld-cameras")
+                 (:file "tileworld-foresight")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"

@@ -3,8 +3,8 @@
 (in-package :ars-testbeds)
 (in-readtable :nisp)
 
-;;; Looking ahead. The agent tries each hole in a fork of the run in which no more holes open: it
-;;; goes there, then on as BOLD-NEARER. Scores are read at several times, so earlier ones count more.
+;;; Looking ahead. The agent tries each hole in a fork of the run in which no more holes open. It
+;;; goes there, then on as BOLD-NEARER. Scores are read several times, so earlier ones count more.
 
 (defun score-ahead (hole horizon)
   "Return what HOLE as the first brings in HORIZON steps: the sum of four readings of the score."

@@ -1,8 +1,7 @@
 ;;;; tileworld-holes.lisp -- Tileworld with holes only (Kinny and Georgeff 1991).
 
-;;; Holes open and close on a floor of 15 x 15 cells. The agent fills the hole in whose cell it ends
-;;; a step. A tick is a unit of the world's clock, or half of one if DYNAMISM* is 1, since a step
-;;; must last two ticks to turn and drive. So no time is rounded.
+;;; A tick is a unit of the world's clock, or half of one if DYNAMISM* is 1, since a step must last
+;;; two ticks to turn and drive. So no time is rounded.
 
 (in-package :ars-testbeds)
 (in-readtable :nisp)
@@ -63,9 +62,9 @@
 (defmap tileworld (19 17)
   (rect (0 0) (16 16) bricks 10)
   (rect (16 0) (18 2) bricks 10)
-  (obj (clock :kickers (open-next)) (17.5 1.5) ((:size 1))))
+  (obj (clock :kickers (open-next)) (17.5 1.5) ((:size 1) (:score 0))))
 
-(defrobot tiler (tileworld (8.5 8.5) 0))
+(defrobot tiler (tileworld (8.5 8.5) 0) :cameras ((6.28 1000)))
 
 (defmeasure effectiveness
   "The score as a share of the scores of all holes, from 0 to 1."
@@ -74,7 +73,6 @@
 (defmeasure filled "How many holes were filled." *filled*)
 
 ;;; For agents: what they can see and do.
-
 (defun open-holes () "Return a list of the open holes, the newest first." *holes*)
 (defun hole-score (hole) "Return the score of HOLE, from 1 to 10." (get-attribute hole :score))
 (defun game-over-p () "True if all holes have closed." (and (<= holes* *opened*) (null *holes*)))
@@ -255,13 +253,16 @@ holes. All agents meet the same holes.")
            (normal-any "Normal, and plans again also when any hole has opened.")
            (bold-any "Bold, but plans again also when any hole has opened.")
            (adaptive "Plans again when a hole, after planning, is worth more than its own.")
+           (bold-camera "Bold, but sees holes by its camera.")
+           (cautious-camera "Cautious, but sees holes by its camera.")
            (look-ahead "Tries each hole in forks of the run; it pays for planning as others do.")
            (omniscient "The upper bound: it knows all holes in advance, and plans without cost."))
   (:robots tiler)
   (:clean)
   (:thinking :charged)
   (:limit 10000000)
-  (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t))
+  (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t) (camera-desig-delay* 1)
+               (scan-density* 1000))
   (:run (play-holes agent))
   (:score effectiveness)
   (:measure filled)
