@@ -23,8 +23,7 @@
   (run:with-simulation ('ars-testbeds:tiler :seed seed :clean t
                                             :parameters (knob-settings settings))
     (run:run-ticks 1)
-    (world:run-kicker (first (world:thing-kickers (world:find-thing 'clock)))
-                      (ars-testbeds::roll-time 60 240))
+    (world:run-kicker (first (world:thing-kickers (world:find-thing 'clock))))
     (ars-testbeds::future-holes)))
 
 (test tileworld.plays-as-a-program-without-the-simulator
@@ -49,6 +48,21 @@
              (ars-testbeds:play-holes (agent-symbol agent))
              (list ars-testbeds::*possible* ars-testbeds::*opened*))))
     (is (equal (possible 'bold) (possible 'random-walk)))))
+
+(test tileworld.games-are-replayed-and-rewound
+  (run:with-simulation ('ars-testbeds:tiler :seed 5 :clean t :thinking :charged :journal t :keep t
+                                            :parameters (append (knob-settings '((holes* 12)
+                                                                                 (dynamism* 16)))
+                                                                '((base:max-speed* 2)
+                                                                  (base:max-turn-angle* 4)
+                                                                  (base:step-by-grid* t))))
+    (ars-testbeds:play-holes 'ars-testbeds::bold-nearer)
+    (flet ((state () (list (run:measure-value 'ars-testbeds:effectiveness) (run:state-digest))))
+      (let ((journal (run:simulation-journal (run:current-simulation))) (end (state)))
+        (is (plusp (first end)))
+        (is (equal end (run:with-replay (journal) (state))))
+        (run:rewind 500)
+        (is (not (equal end (state))))))))
 
 (test tileworld.no-agent-beats-the-bound
   (dolist (gamma '(16 48))

@@ -11,8 +11,7 @@
   (camera-get-all-object-designators
    (robot-camera tiler 0) type '((:score (1 10)))
    (continuation (err camera designators)
-     (fill-hole-here)
-     (funcall then (mapcar #'seen-hole designators)))))
+     (go-on err (lambda () (funcall then (mapcar #'seen-hole designators)))))))
 
 (defun seen-hole (designator)
   "Return the hole that DESIGNATOR is of, a list (x y score)."

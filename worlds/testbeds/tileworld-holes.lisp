@@ -103,12 +103,15 @@
             ((zerop dx) (toward 0 dy))
             (t (toward dx 0))))))
 
+(defun go-on (err then)
+  "A step or thought has ended with ERR. Fill a hole here and call THEN, unless the run was left."
+  (unless (eq err :interrupt)
+    (fill-hole-here)
+    (funcall then)))
+
 (defun take-a-step (direction then)
   "Let the agent step in DIRECTION. At the end it fills a hole in its cell; then call THEN."
-  (robot-step tiler direction
-              (continuation (err robot)
-                (fill-hole-here)
-                (funcall then))))
+  (robot-step tiler direction (continuation (err robot) (go-on err then))))
 
 (defun step-towards (hole then)
   "Let the agent take a step towards HOLE, which may have closed; then call the function THEN."
@@ -116,8 +119,7 @@
 
 (defun spend-steps (steps then)
   "Let the agent spend the time of so many STEPS without moving; then call the function THEN."
-  (think tiler (* steps (step-ticks-here))
-         (continuation (err robot) (fill-hole-here) (funcall then))))
+  (think tiler (* steps (step-ticks-here)) (continuation (err robot) (go-on err then))))
 
 (defun plan-move (then)
   "Let the agent plan, for PLANNING-TIME* steps; then call the function THEN."
@@ -129,15 +131,14 @@
   (robot-set-speed tiler max-speed*)
   (robot-set-turn-angle tiler max-turn-angle*)
   (run-ticks 1)
-  (run-kicker (first (thing-kickers (find-thing 'clock))) (roll-time 60 240))
+  (run-kicker (first (thing-kickers (find-thing 'clock))))
   (start-agent agent)
   (loop until (game-over-p) do (run-ticks 100))
   t)
 
-;;; The published agents. They choose the hole with the highest score for its distance, plan, and
-;;; go there. They plan again when they have arrived; after BOLDNESS steps, if not NIL; or because
-;;; of a REACTION: :TARGET, the hole has gone; :NEARER, that, or a nearer hole opened; :ANY, that,
-;;; or any hole opened.
+;;; The published agents. They plan again when they have arrived; after BOLDNESS steps, if not NIL;
+;;; or because of a REACTION: :TARGET, the hole has gone; :NEARER, that, or a nearer hole opened;
+;;; :ANY, that, or any hole opened.
 
 (defun worth (hole) (/ (hole-score hole) (max 1 (steps-to hole))))
 
