@@ -82,7 +82,7 @@
 (defun save-all-pages (options)
   (let ((out (or (option-value :out options) (reject-usage "--all needs --out DIR."))))
     (ensure-results-directory out)
-    (dolist (file (save-testbed-pages out :seeds (option-value :seeds options 50)
+    (dolist (file (save-testbed-pages out :seeds (option-value :seeds options 100)
                                           :workers (option-value :workers options (processors))))
       (format t "~A~%" (native-name file)))))
 

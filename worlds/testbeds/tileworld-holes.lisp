@@ -191,8 +191,6 @@
 (defun bold-nearer () (decide nil :nearer))
 (defun bold-any () (decide nil :any))
 
-;;; Others.
-
 (defun random-walk ()
   "Step in a random direction, again and again."
   (let ((dice (ars-magna.base:make-dice (+ (world-seed *world*) (simulation-tick)) "walk"))

@@ -52,10 +52,10 @@ SWEEP varies, and a picture of the name PICTURE into DIRECTORY."
 (defun write-claims (testbed stream seeds workers)
   (when (testbed-claims testbed)
     (format stream "~%## Claims~2%")
-    (write-wrapped (format nil "Differences in ~(~A~), in pairs with equal seeds, with 95 % ~
+    (write-wrapped (format nil "Differences in ~(~A~), in pairs with ~D equal seeds, with 95 % ~
                                 intervals; p by the permutation test. A claim holds if each of ~
                                 its differences is as large as stated, with p at most .01."
-                           (testbed-score testbed))
+                           (testbed-score testbed) seeds)
                    stream)
     (loop for (text) in (testbed-claims testbed)
           for number from 1
@@ -75,21 +75,23 @@ SWEEP varies, and a picture of the name PICTURE into DIRECTORY."
   (write-markdown-list "Agents" (loop for (name text) in (testbed-agents testbed)
                                       collect (format nil "`~(~A~)`: ~A" name text))
                        stream)
-  (format stream "~%## Results~2%")
-  (write-wrapped (format nil "Means of ~(~A~) over ~D seeds, with 95 % intervals."
-                         (testbed-score testbed) seeds)
-                 stream)
-  (loop for sweep in (testbed-sweeps testbed)
-        for number from 1
-        do (write-sweep testbed sweep (format nil "~(~A~)-~D" (testbed-name testbed) number)
-                        stream directory seeds workers))
+  (let ((few (max 2 (ceiling seeds 4))))
+    (format stream "~%## Results~2%")
+    (write-wrapped (format nil "Means of ~(~A~) over ~D seeds, with 95 % intervals."
+                           (testbed-score testbed) few)
+                   stream)
+    (loop for sweep in (testbed-sweeps testbed)
+          for number from 1
+          do (write-sweep testbed sweep (format nil "~(~A~)-~D" (testbed-name testbed) number)
+                          stream directory few workers)))
   (write-claims testbed stream seeds workers)
   (write-markdown-list "Sources" (testbed-sources testbed) stream))
 
 (addition save-testbed-pages)
 (defun save-testbed-pages (directory &key (names :all) (seeds 100) (workers 1))
-  "Run the testbeds NAMES, by default all, on as many SEEDS, and write a page of results for each
-into DIRECTORY: NAME.md, with pictures beside it. The page is the same on each machine and for any
+  "Run the testbeds NAMES, by default all, and write a page of results for each into DIRECTORY:
+NAME.md, with pictures beside it. Claims are checked on as many SEEDS; tables of all agents have a
+quarter of them. The page is the same on each machine and for any
 number of WORKERS. Return a list of the files. Signals UNKNOWN-NAME, and MISUSE if DIRECTORY cannot
 be made."
   (let ((directory (ensure-store-directory directory)))
