@@ -3,10 +3,10 @@
 (in-package :ars-magna.experiment)
 
 (defun mean-cell (numbers)
-  "Return the mean of NUMBERS, scores, and its 95 % interval, as a cell of a table."
+  "Return the mean of NUMBERS, scores, and the reach of its 95 % interval, as a cell of a table."
   (multiple-value-bind (low high) (student-interval numbers)
-    (format nil "~A~@[ (~A~]~@[ to ~A)~]" (decimal-text (nearest-mean numbers) 3)
-            (and low (decimal-text low 3)) (and high (decimal-text high 3)))))
+    (format nil "~A~@[ ± ~A~]" (decimal-text (nearest-mean numbers) 3)
+            (and low (decimal-text (/ (- high low) 2) 3)))))
 
 (defun write-markdown-row (cells stream)
   (format stream "|~{ ~A |~}~%" cells))
@@ -27,6 +27,17 @@
                                     :key (lambda (sample) (first (sample-texts sample)))
                                     :test-not #'string=))))
 
+(defun write-score-pictures (testbed results name stream directory)
+  "Save pictures of the score in RESULTS in the folder NAME of DIRECTORY. Show them on STREAM."
+  (let ((prefix (format nil "measure-~(~A~)" (testbed-score testbed))))
+    (terpri stream)
+    (dolist (file (save-result-pictures results (merge-pathnames (format nil "~A/" name) directory)
+                                        :which '(:measures)))
+      (if (starts-with-subseq prefix (pathname-name file))
+          (format stream "![~(~A~) of some agents](~A/~A.svg)~%" (testbed-score testbed) name
+                  (pathname-name file))
+          (delete-file file)))))
+
 (defun write-sweep (testbed sweep picture stream directory seeds workers)
   "Write a table of the scores of all agents of TESTBED to STREAM, for each value of the knob that
 SWEEP varies, and a picture of the name PICTURE into DIRECTORY."
@@ -45,9 +56,7 @@ SWEEP varies, and a picture of the name PICTURE into DIRECTORY."
                             collect (mean-cell (sample-measure results sample
                                                                (testbed-score testbed)))))
                 stream))
-      (format stream "~%![~(~A~) by ~(~A~)](~A/)~%" (testbed-score testbed) knob picture)
-      (save-result-pictures results (merge-pathnames (format nil "~A/" picture) directory)
-                            :which '(:measures)))))
+      (write-score-pictures testbed results picture stream directory))))
 
 (defun write-claims (testbed stream seeds workers)
   (when (testbed-claims testbed)
