@@ -58,7 +58,7 @@
                                                                   (base:step-by-grid* t))))
     (ars-testbeds:play-holes 'ars-testbeds::bold-nearer)
     (flet ((state () (list (run:measure-value 'ars-testbeds:effectiveness) (run:state-digest))))
-      (let ((journal (run:simulation-journal (run:current-simulation))) (end (state)))
+      (let ((journal (run:simulation-journal (time:current-simulation))) (end (state)))
         (is (plusp (first end)))
         (is (equal end (run:with-replay (journal) (state))))
         (run:rewind 500)

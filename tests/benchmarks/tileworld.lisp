@@ -1,5 +1,4 @@
-;;;; tileworld.lisp -- games of Tileworld with holes only: their speed, and agreement with a program
-;;;; without the simulator.
+;;;; tileworld.lisp -- games of Tileworld: their speed, and agreement with a bare program.
 
 (ars:define-user-package :ars-magna.benchmarks.tileworld
   (:documentation "Benchmarks of the testbed Tileworld.")
