@@ -18,7 +18,7 @@
 (defun write-markdown-list (title items stream)
   (when items
     (format stream "~%## ~A~2%" title)
-    (dolist (item items) (write-wrapped item stream :first "* "))))
+    (dolist (item items) (write-wrapped (one-line item) stream :first "* "))))
 
 (defun samples-by-agent (results agents)
   "Return the samples of RESULTS of a testbed as lists (agent sample...), in the order of AGENTS."

@@ -70,7 +70,7 @@ the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
 (defun write-testbed-section (title lines stream)
   (when lines
     (format stream "~%~A~%" title)
-    (dolist (line lines) (write-wrapped line stream :first "  - "))))
+    (dolist (line lines) (write-wrapped (one-line line) stream :first "  - "))))
 
 (defun write-testbed (testbed stream)
   (write-wrapped (format nil "~(~A~): ~A" (testbed-name testbed)
