@@ -231,21 +231,6 @@ between one thing's kicks with the geometric law, as a draw per thing and tick w
       (is (null world:self))
       (signals base:wrong-argument (world:run-kicker nil)))))
 
-(test run-kicker.runs-so-many-ticks-later
-  (with-own-definitions
-    (let* ((world (open-world)) (runs '()) (tick 0))
-      (world:define-kicker 'note :prob 0
-        :body (lambda (thing)
-                (push (list tick (world:thing-name thing)) runs)
-                (when (< tick 3) (world:run-kicker world:self 5))))
-      (loop for (name ticks) in '((late 4) (moved 9) (soon 2))
-            do (world:run-kicker (world:set-kicker (thing-in world name 1 1) 'note) ticks))
-      (world:run-kicker (world:find-attachment (world:find-thing 'moved world) 'note) 4)
-      (loop repeat 12 do (incf tick) (world:run-kickers world))
-      (is (equal '((2 soon) (4 late) (4 moved) (7 soon)) (reverse runs)))
-      (signals base:wrong-argument
-        (world:run-kicker (world:find-attachment (world:find-thing 'soon world) 'note) 1/2)))))
-
 (test run-kicker.goes-on-as-a-trajectory
   (with-own-definitions
     (let* ((world (open-world)) (ball (thing-in world 'ball 1 1)))

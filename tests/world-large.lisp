@@ -57,3 +57,20 @@ Each third one rolls DICE once more."
                                          (first (world::world-kicker-groups world)))
                                  dice)
                  (reverse kicks))))))
+
+;;; Kickers that run at a later tick, by request.
+
+(test run-kicker.runs-so-many-ticks-later
+  (with-own-definitions
+    (let* ((world (open-world)) (runs '()) (tick 0))
+      (world:define-kicker 'note :prob 0
+        :body (lambda (thing)
+                (push (list tick (world:thing-name thing)) runs)
+                (when (< tick 3) (world:run-kicker world:self 5))))
+      (loop for (name ticks) in '((late 4) (moved 9) (soon 2))
+            do (world:run-kicker (world:set-kicker (thing-in world name 1 1) 'note) ticks))
+      (world:run-kicker (world:find-attachment (world:find-thing 'moved world) 'note) 4)
+      (loop repeat 12 do (incf tick) (world:run-kickers world))
+      (is (equal '((2 soon) (4 late) (4 moved) (7 soon)) (reverse runs)))
+      (signals base:wrong-argument
+        (world:run-kicker (world:find-attachment (world:find-thing 'soon world) 'note) 1/2)))))
