@@ -203,7 +203,7 @@
                  (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))
    (:module "worlds/testbeds" :serial t
     :components ((:file "package") (:file "tileworld-holes") (:file "tileworld-cameras")
-                 (:file "tileworld-foresight")))))
+                 (:file "tileworld-foresight") (:file "pursuit") (:file "pursuit-modelling")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"
@@ -427,6 +427,7 @@
                  (:file "experiments-hanging") (:file "experiments-fingerprints")
                  (:file "experiments-series") (:file "experiments-series-tables")
                  (:file "thinking-experiments") (:file "tileworld-bare") (:file "testbeds")
+                 (:file "pursuit-bare") (:file "testbeds-pursuit")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

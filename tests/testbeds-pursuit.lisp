@@ -1,0 +1,46 @@
+;;;; testbeds-pursuit.lisp -- the testbed of pursuit: its rules, agents and claims.
+
+(in-package :ars-magna.tests)
+
+(in-suite testbeds)
+
+(defun pursuit-symbol (name) (find-symbol (string name) :ars-pursuit))
+
+(defmacro with-pursuit ((agent &key (seed 1) knobs) &body body)
+  "Run BODY after a game of AGENT, or at the start of one if AGENT is NIL."
+  `(call-with-pursuit ,agent ,seed ,knobs (lambda () ,@body)))
+
+(defun call-with-pursuit (agent seed knobs function)
+  (run:with-simulation ((mapcar #'pursuit-symbol
+                                '(prey predator-1 predator-2 predator-3 predator-4 predator-5
+                                  predator-6))
+                        :seed seed :clean t :thinking :charged
+                        :parameters (append (loop for (name value) in knobs
+                                                  collect (list (pursuit-symbol name) value))
+                                            '((base:max-speed* 1) (base:max-turn-angle* 4)
+                                              (base:robot-turn-delay* 0) (base:step-duration* 1)
+                                              (base:step-by-grid* t))))
+    (when agent (ars-pursuit:play-pursuit (pursuit-symbol agent)))
+    (funcall function)))
+
+(defun pursuit-cells ()
+  (loop for cell across (ars-pursuit:current-cells)
+        collect (multiple-value-bind (row column) (floor cell 20)
+                  (cons (1+ column) (1+ row)))))
+
+(defun pursuit-time ()
+  (run:measure-value 'ars-pursuit:capture-time))
+
+(test pursuit.plays-as-a-program-without-the-simulator
+  "The same draws, the same rules: the same moves to the end."
+  (loop for (agent bare seeds knobs . options)
+          in '((greedy :greedy (1 2 3) ((time-limit* 150)) :limit 150)
+               (random-walk 0 (1 2) ((time-limit* 60)) :limit 60)
+               (greedy :greedy (4 5) ((time-limit* 60) (order* :turns)) :limit 60 :turns t)
+               (level-2 2 (1) ((time-limit* 12)) :limit 12)
+               (level-4 4 (2) ((predators* 3) (time-limit* 30)) :limit 30 :count 3))
+        do (dolist (seed seeds)
+             (multiple-value-bind (round cells) (apply #'bare-hunt bare seed options)
+               (with-pursuit (agent :seed seed :knobs knobs)
+                 (is (= round (pursuit-time)) "~A ~D" agent seed)
+                 (is (equal cells (pursuit-cells)) "~A ~D" agent seed))))))

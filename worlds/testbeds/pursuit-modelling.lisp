@@ -1,0 +1,128 @@
+;;;; pursuit-modelling.lisp -- predators that model what the others will do, and one that forks.
+
+(in-package :ars-pursuit)
+(in-readtable :nisp)
+
+;;; A predator's payoff is by how much it has come nearer to the prey, and a
+;;; weight for each quadrant that is held. At level 1 it expects all moves of the others to be
+;;; equally likely; at level N, that they choose at level N - 1. Equally good moves are equally
+;;; likely. The prey is always expected to move at random. A mix is five probabilities of moves.
+
+(defun add-payoffs (table at share cells after)
+  "Add SHARE of the payoff of each predator to TABLE, from the index AT on."
+  (declare (type cells cells after) (type reals table) (type fixnum at) (type double-float share)
+           (optimize speed))
+  (let* ((last (1- (length cells)))
+         (held (* (the double-float (float (the real quadrant-weight*) 1d0))
+                  (the (integer 0 4) (quadrants-held after)))))
+    (dotimes (i last)
+      (incf (aref table (+ at i))
+            (* share (+ held (- (distance-to (aref cells i) (aref cells last))
+                                (distance-to (aref after i) (aref after last)))))))))
+
+(defun payoffs (cells)
+  "Return the expected payoffs of the predators for all their joint moves. That of predator I is at
+the index I + COUNT x J, where J has the moves as digits to the base of 5."
+  (declare (type cells cells))
+  (let* ((count (1- (length cells))) (first-move (if prey-stays* 0 1))
+         (share (/ 1d0 (- 5 first-move)))
+         (table (make-array (* count (expt 5 count)) :element-type 'double-float
+                                                     :initial-element 0d0))
+         (goals (copy-seq cells)) (after (copy-seq cells)))
+    (dotimes (joint (expt 5 count) table)
+      (loop for i below count
+            for moves = joint then (floor moves 5)
+            do (setf (aref goals i) (next-cell (aref cells i) (mod moves 5))))
+      (loop for move from first-move to 4
+            do (setf (aref goals count) (next-cell (aref cells count) move))
+               (move-all cells goals after)
+               (add-payoffs table (* count joint) share cells after)))))
+
+(defun expected-payoffs (table i mixes)
+  "Return what each move of predator I brings if the others play MIXES, a vector."
+  (declare (type reals table) (type fixnum i) (type simple-vector mixes) (optimize speed))
+  (let ((count (length mixes)) (sums (make-array 5 :element-type 'double-float)))
+    (labels ((weigh (who joint weight move)
+               (declare (type fixnum who joint move) (type double-float weight))
+               (cond ((zerop weight))
+                     ((minusp who)
+                      (incf (aref sums move) (* weight (aref table (+ i (* count joint))))))
+                     (t (dotimes (its-move 5)
+                          (let ((joint (+ its-move (* 5 joint))))
+                            (if (= who i)
+                                (weigh (1- who) joint weight its-move)
+                                (weigh (1- who) joint
+                                     (* weight (aref (the reals (svref mixes who)) its-move))
+                                     move))))))))
+      (weigh (1- count) 0 1d0 0))
+    sums))
+
+(defun best-mix (payoffs)
+  "Return the mix of the moves with the largest of PAYOFFS, five numbers."
+  (let* ((best (- (reduce #'max payoffs) 1d-9))
+         (share (/ 1d0 (count-if (lambda (payoff) (< best payoff)) payoffs))))
+    (map 'reals (lambda (payoff) (if (< best payoff) share 0d0)) payoffs)))
+
+(defun all-mixes (cells level)
+  (let ((table (payoffs cells))
+        (mixes (map 'vector (constantly (best-mix '(0 0 0 0 0))) (rest (coerce cells 'list)))))
+    (loop repeat level
+          do (setf mixes (coerce (loop for i below (length mixes)
+                                       collect (best-mix (expected-payoffs table i mixes)))
+                                 'simple-vector)))
+    mixes))
+
+;; All predators model the same. The last result is no part of a run: it depends on its key only.
+(defvar *last-mixes* '(nil))
+
+(defun modelled-moves (cells level)
+  "Return a vector of the mixes that the predators choose at LEVEL, by number."
+  (let ((key (list cells level prey-stays* metric* diagonal* quadrant-weight*))
+        (last *last-mixes*))
+    (if (equalp key (first last))
+        (rest last)
+        (rest (setf *last-mixes* (cons key (all-mixes cells level)))))))
+
+(defun level-move (robot level)
+  (draw-move robot (svref (modelled-moves (current-cells) level) (position robot (predators)))))
+
+(defun level-1-move (robot) (level-move robot 1))
+(defun level-2-move (robot) (level-move robot 2))
+(defun level-3-move (robot) (level-move robot 3))
+(defun level-4-move (robot) (level-move robot 4))
+
+(defun level-1 () (hunt #'level-1-move))
+(defun level-2 () (hunt #'level-2-move))
+(defun level-3 () (hunt #'level-3-move))
+(defun level-4 () (hunt #'level-4-move))
+
+;;; Looking ahead: every four rounds, forks play on with each level, and the quickest is kept up.
+
+(define-run-variable *style* 'level-2-move "What the predators of LOOK-AHEAD play now.")
+
+(defun style-move (robot) (funcall *style* robot))
+
+(defun distance-left ()
+  (loop for predator in (predators)
+        sum (distance-to (robot-cell predator) (robot-cell prey))))
+
+(defun time-ahead (style)
+  "Return how many rounds STYLE takes in two forks, and how far the predators then are."
+  (loop for number from 1 to 2
+        sum (with-fork (:seed (+ number (* 10 (simulation-tick))) :continuations t)
+              (let ((start (rounds-played)))
+                (setf *style* style)
+                (play-rounds 10)
+                (+ (- (rounds-played) start) (if (captured-p) 0 (distance-left)))))))
+
+(defun look-ahead ()
+  "Play to the end of the game. Forks are made between ticks, so the agent passes them itself."
+  (hunt #'style-move)
+  (loop until (game-over-p)
+        do (setf *style* (loop with best and least
+                               for style in '(level-1-move level-2-move level-4-move)
+                               for time = (time-ahead style)
+                               do (when (or (null best) (< time least))
+                                    (setf best style least time))
+                               finally (return best)))
+           (play-rounds 4)))
