@@ -44,3 +44,45 @@
                (with-pursuit (agent :seed seed :knobs knobs)
                  (is (= round (pursuit-time)) "~A ~D" agent seed)
                  (is (equal cells (pursuit-cells)) "~A ~D" agent seed))))))
+
+(defun pursuit-scores (agent &key (seeds 10) knobs (measure "capture-time"))
+  (let* ((results (experiment:run-testbed 'pursuit :agents (list (pursuit-symbol agent))
+                                                   :knobs knobs :seeds seeds :stream nil))
+         (sample (first (experiment:results-samples results))))
+    (is (every (lambda (text) (string= "" text)) (experiment:sample-errors sample)))
+    (coerce (experiment:sample-measure results sample measure) 'list)))
+
+(test pursuit.no-agent-is-quicker-than-the-bound
+  (is (every #'<= (pursuit-scores 'level-4 :measure "least-time") (pursuit-scores 'level-4))))
+
+(test pursuit.modelling-helps
+  "Level 2 is quicker than greed; one level alone lets some prey escape."
+  (let ((greedy (pursuit-scores 'greedy :seeds 30)) (level-2 (pursuit-scores 'level-2 :seeds 30)))
+    (is (< (* 2 (reduce #'+ level-2)) (reduce #'+ greedy)))
+    (is (notany (lambda (time) (= 500 time)) level-2))
+    (is (some (lambda (time) (= 500 time)) (pursuit-scores 'level-1 :seeds 30)))))
+
+(test pursuit.robots-never-share-a-cell
+  (dolist (knobs '(((contested* :one) (time-limit* 40)) ((order* :turns) (time-limit* 20))))
+    (with-pursuit (nil :knobs knobs)
+      (ars-pursuit::place-players)
+      (run:run-ticks 2)
+      (ars-pursuit::start-moving ars-pursuit:prey #'ars-pursuit::prey-move)
+      (experiment:start-agent 'ars-pursuit::greedy)
+      (loop repeat 40
+            do (run:run-ticks 2)
+               (let ((cells (pursuit-cells)))
+                 (is (equal cells (remove-duplicates cells :test #'equal))))))))
+
+(test pursuit.forks-and-replays-exactly
+  (with-pursuit ('level-2 :seed 3)
+    (flet ((state () (list (pursuit-time) (pursuit-cells) (run:state-digest))))
+      (let ((journal (run:simulation-journal (run::current-simulation))) (end (state)))
+        (is (equal end (run:with-replay (journal) (state))))
+        (run:rewind 8)
+        (let ((fork (run:with-fork (:continuations t) (run:run-ticks 8) (state))))
+          (run:run-ticks 8)
+          (is (equal fork (state))))))))
+
+(test pursuit.looks-ahead-by-forks
+  (is (every (lambda (time) (< time 500)) (pursuit-scores 'look-ahead :seeds 2))))

@@ -161,8 +161,7 @@ not change places."
          (turn (- (nth move '(0 0 1 2 3)) (round (robot-angle robot) (/ pi 2)))))
     (setf *goals* (list* (simulation-tick) goal
                          (and (eql (first *goals*) (simulation-tick)) (rest *goals*))))
-    (flet ((drive (err robot)
-             (declare (ignore err))
+    (flet ((drive (robot)
              (if (or (= cell goal) (contested-p goal))
                  (rest-ticks robot 1 then)
                  (robot-step robot (nth move '(nil :east :south :west :north))
@@ -170,8 +169,9 @@ not change places."
                                (when err (move-back robot))
                                (funcall then))))))
       (if (or (= cell goal) (zerop (mod turn 4)))
-          (think robot 1 #'drive)
-          (robot-turn robot (* (/ pi 2) (- (mod (+ turn 1) 4) 1)) #'drive)))))
+          (think robot 1 (continuation (err robot) (drive robot)))
+          (robot-turn robot (* (/ pi 2) (- (mod (+ turn 1) 4) 1))
+                      (continuation (err robot angle) (drive robot)))))))
 
 (defun move-back (robot)
   "Put ROBOT, which another one has barred, back into the middle of its cell."
