@@ -3,6 +3,8 @@
 (in-package :ars-pursuit)
 (in-readtable :nisp)
 
+(deftype reals () '(simple-array double-float (*)))
+
 ;;; A predator's payoff is by how much it has come nearer to the prey, and a
 ;;; weight for each quadrant that is held. At level 1 it expects all moves of the others to be
 ;;; equally likely; at level N, that they choose at level N - 1. Equally good moves are equally
@@ -83,6 +85,13 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
         (rest last)
         (rest (setf *last-mixes* (cons key (all-mixes cells level)))))))
 
+(defun random-move (robot) (draw-move robot '(1/5 1/5 1/5 1/5 1/5)))
+
+(defun greedy-move (robot)
+  (let ((cell (robot-cell robot)) (target (robot-cell prey)))
+    (draw-move robot (best-mix (loop for move from 0 to 4
+                                     collect (- (distance-to (next-cell cell move) target)))))))
+
 (defun level-move (robot level)
   (draw-move robot (svref (modelled-moves (current-cells) level) (position robot (predators)))))
 
@@ -91,6 +100,9 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
 (defun level-3-move (robot) (level-move robot 3))
 (defun level-4-move (robot) (level-move robot 4))
 
+(defun still () (hunt (constantly 0)))
+(defun random-walk () (hunt #'random-move))
+(defun greedy () (hunt #'greedy-move))
 (defun level-1 () (hunt #'level-1-move))
 (defun level-2 () (hunt #'level-2-move))
 (defun level-3 () (hunt #'level-3-move))

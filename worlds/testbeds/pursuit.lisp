@@ -2,7 +2,8 @@
 
 (ars:define-user-package :ars-pursuit
   (:documentation "The testbed of pursuit: predators that model one another surround a prey.")
-  (:export #:pursuit #:prey #:predators* #:order* #:contested* #:prey-stays* #:metric* #:diagonal*
+  (:export #:pursuit #:prey #:predator-1 #:predator-2 #:predator-3 #:predator-4 #:predator-5
+           #:predator-6 #:predators* #:order* #:contested* #:prey-stays* #:metric* #:diagonal*
            #:quadrant-weight* #:time-limit* #:capture-time #:captured #:least-time #:predators
            #:current-cells #:next-cell #:cells-after #:distance-to #:quadrants-held #:captured-p
            #:game-over-p #:draw-move #:modelled-moves #:play-pursuit #:hunt))
@@ -53,7 +54,6 @@
 
 (deftype cell () '(integer 0 399))
 (deftype cells () '(simple-array fixnum (*)))
-(deftype reals () '(simple-array double-float (*)))
 
 (defun robot-cell (robot)
   (+ (floor (- (robot-x robot) 1)) (* 20 (floor (- (robot-y robot) 1)))))
@@ -239,6 +239,9 @@ which it may reach in 9 moves, or in a corner, in 18."
                                        unless (member cell taken) return cell))
               taken)))))
 
+(defun prey-move (robot)
+  (draw-move robot (if prey-stays* '(1/5 1/5 1/5 1/5 1/5) '(0 1/4 1/4 1/4 1/4))))
+
 (defun play-pursuit (agent)
   "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
   (place-players)
@@ -248,22 +251,6 @@ which it may reach in 9 moves, or in a corner, in 18."
   (start-agent agent)
   (play-rounds time-limit*)
   t)
-
-;;; The agents.
-
-(defun prey-move (robot)
-  (draw-move robot (if prey-stays* '(1/5 1/5 1/5 1/5 1/5) '(0 1/4 1/4 1/4 1/4))))
-
-(defun random-move (robot) (draw-move robot '(1/5 1/5 1/5 1/5 1/5)))
-
-(defun greedy-move (robot)
-  (let ((cell (robot-cell robot)) (target (robot-cell prey)))
-    (draw-move robot (best-mix (loop for move from 0 to 4
-                                     collect (- (distance-to (next-cell cell move) target)))))))
-
-(defun still () (hunt (constantly 0)))
-(defun random-walk () (hunt #'random-move))
-(defun greedy () (hunt #'greedy-move))
 
 ;;; The testbed.
 
