@@ -14,7 +14,7 @@
   (run:with-simulation ((mapcar #'pursuit-symbol
                                 '(prey predator-1 predator-2 predator-3 predator-4 predator-5
                                   predator-6))
-                        :seed seed :clean t :thinking :charged
+                        :seed seed :clean t :thinking :charged :journal t :keep t
                         :parameters (append (loop for (name value) in knobs
                                                   collect (list (pursuit-symbol name) value))
                                             '((base:max-speed* 1) (base:max-turn-angle* 4)
@@ -33,14 +33,21 @@
 
 (test pursuit.plays-as-a-program-without-the-simulator
   "The same draws, the same rules: the same moves to the end."
-  (loop for (agent bare seeds knobs . options)
-          in '((greedy :greedy (1 2 3) ((time-limit* 150)) :limit 150)
-               (random-walk 0 (1 2) ((time-limit* 60)) :limit 60)
-               (greedy :greedy (4 5) ((time-limit* 60) (order* :turns)) :limit 60 :turns t)
-               (level-2 2 (1) ((time-limit* 12)) :limit 12)
-               (level-4 4 (2) ((predators* 3) (time-limit* 30)) :limit 30 :count 3))
+  (loop for (agent bare seeds knobs rules . options)
+          in '((greedy :greedy (1 2 3) ((time-limit* 150)) () :limit 150)
+               (random-walk 0 (1 2) ((time-limit* 60)) () :limit 60)
+               (greedy :greedy (4 5) ((time-limit* 60) (order* :turns)) () :limit 60 :turns t)
+               (greedy :greedy (6) ((time-limit* 60) (metric* :king)) (:metric :king) :limit 60)
+               (level-2 2 (1) ((time-limit* 12)) () :limit 12)
+               (level-2 2 (2) ((time-limit* 6) (diagonal* :none) (prey-stays* t)
+                               (quadrant-weight* 2))
+                (:diagonal :none :stays t :weight 2) :limit 6)
+               (level-4 4 (2) ((predators* 3) (time-limit* 30)) () :limit 30 :count 3)
+               (level-4 4 (3) ((time-limit* 8)) () :limit 8))
         do (dolist (seed seeds)
-             (multiple-value-bind (round cells) (apply #'bare-hunt bare seed options)
+             (multiple-value-bind (round cells)
+                 (let ((*bare-rules* (append rules *bare-rules*)))
+                   (apply #'bare-hunt bare seed options))
                (with-pursuit (agent :seed seed :knobs knobs)
                  (is (= round (pursuit-time)) "~A ~D" agent seed)
                  (is (equal cells (pursuit-cells)) "~A ~D" agent seed))))))
@@ -62,27 +69,35 @@
     (is (notany (lambda (time) (= 500 time)) level-2))
     (is (some (lambda (time) (= 500 time)) (pursuit-scores 'level-1 :seeds 30)))))
 
+(defun start-pursuit (agent)
+  (ars-pursuit::place-players)
+  (run:run-ticks 2)
+  (ars-pursuit::start-moving ars-pursuit:prey #'ars-pursuit::prey-move)
+  (experiment:start-agent (pursuit-symbol agent)))
+
 (test pursuit.robots-never-share-a-cell
   (dolist (knobs '(((contested* :one) (time-limit* 40)) ((order* :turns) (time-limit* 20))))
     (with-pursuit (nil :knobs knobs)
-      (ars-pursuit::place-players)
-      (run:run-ticks 2)
-      (ars-pursuit::start-moving ars-pursuit:prey #'ars-pursuit::prey-move)
-      (experiment:start-agent 'ars-pursuit::greedy)
+      (start-pursuit 'greedy)
       (loop repeat 40
             do (run:run-ticks 2)
                (let ((cells (pursuit-cells)))
                  (is (equal cells (remove-duplicates cells :test #'equal))))))))
 
-(test pursuit.forks-and-replays-exactly
-  (with-pursuit ('level-2 :seed 3)
-    (flet ((state () (list (pursuit-time) (pursuit-cells) (run:state-digest))))
-      (let ((journal (run:simulation-journal (run::current-simulation))) (end (state)))
-        (is (equal end (run:with-replay (journal) (state))))
-        (run:rewind 8)
-        (let ((fork (run:with-fork (:continuations t) (run:run-ticks 8) (state))))
-          (run:run-ticks 8)
-          (is (equal fork (state))))))))
+(test pursuit.forks-rewinds-and-replays-exactly
+  (with-pursuit (nil :seed 3)
+    (start-pursuit 'level-2)
+    (run:run-ticks 8)
+    (flet ((state () (list (pursuit-cells) (run:state-digest))))
+      (let ((middle (state))
+            (fork (run:with-fork (:continuations t) (run:run-ticks 9) (state)))
+            (end (progn (run:run-ticks 9) (state))))
+        (is (not (equal middle end)))
+        (is (equal fork end))
+        (is (equal end (run:with-replay ((run:simulation-journal (run::current-simulation)))
+                         (state))))
+        (run:rewind 9)
+        (is (equal middle (state)))))))
 
 (test pursuit.looks-ahead-by-forks
   (is (every (lambda (time) (< time 500)) (pursuit-scores 'look-ahead :seeds 2))))

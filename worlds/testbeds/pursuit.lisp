@@ -148,10 +148,12 @@ not change places."
   "Return how many ticks of a round a robot waits while others have their turns."
   (if (eq order* :turns) (* 2 predators*) 0))
 
+(defun rewound-p (err) (eq err :interrupt))
+
 (defun rest-ticks (robot ticks then)
   (if (zerop ticks)
       (funcall then)
-      (think robot ticks (continuation (err robot) (funcall then)))))
+      (think robot ticks (continuation (err robot) (unless (rewound-p err) (funcall then))))))
 
 (defun contested-p (goal) (and (eq contested* :none) (< 1 (count goal (rest *goals*)))))
 
@@ -166,12 +168,13 @@ not change places."
                  (rest-ticks robot 1 then)
                  (robot-step robot (nth move '(nil :east :south :west :north))
                              (continuation (err robot)
-                               (when err (move-back robot))
-                               (funcall then))))))
+                               (unless (rewound-p err)
+                                 (when err (move-back robot))
+                                 (funcall then)))))))
       (if (or (= cell goal) (zerop (mod turn 4)))
-          (think robot 1 (continuation (err robot) (drive robot)))
+          (rest-ticks robot 1 (lambda () (drive robot)))
           (robot-turn robot (* (/ pi 2) (- (mod (+ turn 1) 4) 1))
-                      (continuation (err robot angle) (drive robot)))))))
+                      (continuation (err robot angle) (unless (rewound-p err) (drive robot))))))))
 
 (defun move-back (robot)
   "Put ROBOT, which another one has barred, back into the middle of its cell."
