@@ -74,9 +74,6 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
                                  'simple-vector)))
     mixes))
 
-;; All predators model the same. The last result is no part of a run: it depends on its key only.
-(defvar *last-mixes* '(nil))
-
 (defun modelled-moves (cells level)
   "Return a vector of the mixes that the predators choose at LEVEL, by number."
   (let ((key (list cells level prey-stays* metric* diagonal* quadrant-weight*))

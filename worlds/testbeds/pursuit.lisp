@@ -43,6 +43,9 @@
 (define-run-variable *goals* '(0) "The tick in which a round began, and the goals in it, cells.")
 (define-run-variable *least-time* 0 "The least time to capture by the distances at the start.")
 
+;; All predators model the same. This is no part of a run: it depends on its key only.
+(defvar *last-mixes* '(nil) "The key and the result of the last call of MODELLED-MOVES.")
+
 (defun predators ()
   "Return a list of the predators that take part, by number."
   (subseq (list predator-1 predator-2 predator-3 predator-4 predator-5 predator-6) 0 predators*))
@@ -195,8 +198,7 @@ not change places."
   "Let each predator make, round by round, the move that the function CHOOSE returns for it."
   (dolist (predator (predators)) (start-moving predator choose)))
 
-(defun rounds-played ()
-  (ceiling (- (simulation-tick) *start*) (+ 2 (ticks-off))))
+(defun rounds-played () (ceiling (- (simulation-tick) *start*) (+ 2 (ticks-off))))
 
 (defun game-over-p ()
   "True if the prey is captured or has escaped."
@@ -207,8 +209,7 @@ not change places."
         until (game-over-p)
         do (run-ticks 2)))
 
-(defmeasure capture-time "After how many rounds the prey was captured, or escaped."
-  (rounds-played))
+(defmeasure capture-time "How many rounds until capture or escape." (rounds-played))
 
 (defmeasure captured "Whether the prey was captured." (captured-p))
 
@@ -287,7 +288,7 @@ quadrant-weight* for each of the four quadrants around the prey that holds a pre
   (:limit 1000000)
   (:parameters (max-speed* 1) (max-turn-angle* 4) (robot-turn-delay* 0) (step-duration* 1)
                (step-by-grid* t))
-  (:run (play-pursuit agent))
+  (:run (let ((*last-mixes* '(nil))) (play-pursuit agent)))
   (:score capture-time)
   (:measure captured least-time)
   (:seeds :tuning 1000000 :testing 0)
