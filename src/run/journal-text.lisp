@@ -90,7 +90,7 @@
   (proper-list-of-p (lambda (element) (typep element type)) object))
 
 (defun settings-p (object)
-  (list-of-p '(cons string (cons (or real boolean) null)) object))
+  (list-of-p '(cons string (cons (or real boolean keyword) null)) object))
 
 (defun definitions-p (object)
   (list-of-p '(cons symbol (cons string (cons (or integer symbol) null))) object))

@@ -28,10 +28,11 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
   (declare (type cells cells))
   (let* ((count (1- (length cells))) (first-move (if prey-stays* 0 1))
          (share (/ 1d0 (- 5 first-move)))
-         (table (make-array (* count (expt 5 count)) :element-type 'double-float
-                                                     :initial-element 0d0))
+         (joint-moves (reduce #'* (make-list count :initial-element 5)))
+         (table (make-array (* count joint-moves) :element-type 'double-float
+                                                  :initial-element 0d0))
          (goals (copy-seq cells)) (after (copy-seq cells)))
-    (dotimes (joint (expt 5 count) table)
+    (dotimes (joint joint-moves table)
       (loop for i below count
             for moves = joint then (floor moves 5)
             do (setf (aref goals i) (next-cell (aref cells i) (mod moves 5))))
