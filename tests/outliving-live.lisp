@@ -180,6 +180,19 @@
     (is-true (message-with "Error in the continuation of robot-turn: Timeout"))
     (is-true (goes-on-p (live-shrew)))))
 
+(test live.a-time-limit-ends-a-wait-for-code-that-does-not-return
+  (with-live-shrew
+    (let ((held (base:make-semaphore "held")) (release (base:make-semaphore "release")))
+      (turn-and (live-shrew) (lambda ()
+                               (base:signal-semaphore held)
+                               (base:wait-on-semaphore release 60)))
+      (is-true (base:wait-on-semaphore held 60))
+      (dolist (wait (list (lambda () (run:await-idle)) (lambda () (time:asking ((live-shrew)) 1))))
+        (is (eq :timed-out (handler-case (sb-ext:with-timeout .05 (funcall wait))
+                             (sb-ext:timeout () :timed-out)))))
+      (base:signal-semaphore release)
+      (is-true (run:await-idle)))))
+
 (test live.a-break-in-what-is-asked-is-told-to-who-asks
   (with-live-shrew
     (signals base:misuse (time:asking ((live-shrew)) (break "Here?")))

@@ -158,5 +158,6 @@
     (in-lagoon () (setf *catch* 3 ended otter))
     (in-lagoon ()
       (setf *catch* 4)
-      (is (= 9 (time:asking (ended) (setf *catch* 9))))
+      (is (= 3 (time:asking (ended) *catch*)))
+      (is (search "is over" (text-of-error (lambda () (time:asking (ended) (setf *catch* 9))))))
       (is (= 4 *catch*)))))

@@ -60,7 +60,7 @@ the outcome itself. RESOURCE is the robot or part that carries out a single comm
                                       (not (live-p simulation))
                                       (paused-for-good-p simulation)
                                       (simulation-over simulation)))
-        (asking (simulation) (remove-observer #'look simulation)))))
+        (ask-later simulation (lambda () (remove-observer #'look simulation))))))
   (funcall test))
 
 (defun await-test (test)

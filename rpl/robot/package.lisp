@@ -10,7 +10,8 @@
                 #:warn-once #:world-robots
                 #:warning-given-p #:record-progress-checked)
   (:import-from :ars-magna.time
-                #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking #:live-p
+                #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking
+                #:ask-later #:live-p
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
                 #:timeline-tick #:check-not-secluded #:check-not-over
                 #:wake-owner #:record-code-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*

@@ -111,7 +111,7 @@ calls from outside can wake the plans."
                      (with-plans (interface) (warn-of-outside-waits (interface-runner interface)))))
               (check-wait-while-paused 'run-plan simulation)
               (serve-and-wait-once over 0.2))
-        (asking (simulation) (remove-observer #'look simulation))))))
+        (ask-later simulation (lambda () (remove-observer #'look simulation)))))))
 
 (defun check-may-wait (interface)
   "Signal MISUSE if waiting for a plan in this thread would keep the plan itself from going on."

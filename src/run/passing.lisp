@@ -195,7 +195,8 @@ live, return at once whether it is idle. Signals WRONG-ARGUMENT unless SECONDS i
       (in-any-case
         (progn (add-observer #'look simulation)
                (wait-on-idle-semaphore idle seconds simulation))
-        (remove-observer #'look simulation)))))
+        ;; Without waiting: code that does not return may be what the wait was ended for.
+        (ask-later simulation (lambda () (remove-observer #'look simulation)))))))
 
 (defun wait-on-idle-semaphore (idle seconds simulation)
   "Wait at most SECONDS until SIMULATION is idle. Return true if it is. The semaphore IDLE is

@@ -172,6 +172,7 @@ error in an init form is signalled when the variable is first used, since many r
   "Set the run variable NAME to VALUE in the current run. Return VALUE."
   (let ((world (world-of-current-run name)))
     (definition-of-variable name)
+    (check-not-over world 'setf)
     (check-run-variable-value 'setf name value world)
     (let ((kept (copied-value value)))
       (changing (world set-run-variable name kept)

@@ -15,8 +15,9 @@
   "Call FUNCTION, without arguments, while the world of OBJECT, a simulation or robot, stands still.
 The run of OBJECT is the current one meanwhile, also for run variables and measures. If this thread
 or no thread owns the world, call FUNCTION at once; else the owning thread calls FUNCTION between
-two ticks. Return the values of FUNCTION. Errors of FUNCTION are signalled in this thread. Signals
-MISUSE inside a tick of another world, and if FUNCTION is aborted."
+two ticks. Return the values of FUNCTION. Errors of FUNCTION are signalled in this thread. If a time
+limit ends the wait in this thread, FUNCTION goes on in the owning thread. Signals MISUSE inside a
+tick of another world, and if FUNCTION is aborted."
   (let ((custody (timeline-custody (timeline-of object))))
     (flet ((answer () (call-in-run-of object function)))
       (call-with-custody custody #'answer (lambda () (ask-owner custody #'answer))))))
