@@ -203,7 +203,9 @@
                  (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))
    (:module "worlds/testbeds" :serial t
     :components ((:file "package") (:file "tileworld-holes") (:file "tileworld-cameras")
-                 (:file "tileworld-foresight") (:file "pursuit") (:file "pursuit-modelling")))))
+                 (:file "tileworld-foresight") (:file "tileworld-tiles")
+                 (:file "tileworld-tiles-agents") (:file "tileworld-wind") (:file "pursuit")
+                 (:file "pursuit-modelling")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"
@@ -428,6 +430,7 @@
                  (:file "experiments-series") (:file "experiments-series-tables")
                  (:file "thinking-experiments") (:file "tileworld-bare") (:file "testbeds")
                  (:file "pursuit-bare") (:file "testbeds-pursuit")
+                 (:file "testbeds-tiles")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

@@ -1,0 +1,287 @@
+;;;; tileworld-wind.lisp -- NASA Tileworld: a robot carries tiles to their places, wind moves them.
+
+;;; A tile is a polyomino of several things that move as one: a gust of wind moves all tiles that
+;;; the robot does not hold the same way, a homogeneous event (manual 1.2). A step takes 2 ticks.
+
+(in-package :ars-testbeds.wind)
+(in-readtable :nisp)
+
+(define-knob steps* 400 "steps" (integer 1 1000000) "How long a game lasts.")
+(define-knob gust-interval* 20 "steps" (integer 1 100000)
+  "How much time passes between two gusts of wind, in the mean.")
+(define-knob gust-strength* 2 "cells" (integer 0 15) "How far a gust moves a tile at most.")
+(define-knob tile-count* 4 "tiles" (integer 1 8) "How many tiles there are.")
+(define-knob tile-cells* 3 "cells" (integer 1 6) "How many cells a tile has.")
+
+;;; The world. A tile is a list (id target offsets cell...): TARGET is the place (x y) for its first
+;;; cell, which the hand grasps; the cells are things, OFFSETS lists (dx dy), one for each.
+
+(define-run-variable *tiles* '() "The tiles.")
+(define-run-variable *readings* 0 "How many ticks the tiles have been watched.")
+(define-run-variable *in-place* 0 "The sum, over these ticks, of how many tiles are in place.")
+(define-run-variable *blown* 0 "By how many cells the wind has moved tiles.")
+
+(defmap windy-floor (19 17)
+  (rect (0 0) (16 16) bricks 10)
+  (rect (16 0) (18 2) bricks 10)
+  (obj clock (17.5 1.5) ((:size 1))))
+
+(defrobot carrier (windy-floor (8.5 8.5) 0) :cameras (((/ pi 2) 20)) :hands (100))
+
+(defun tiles () "Return a list of the tiles." *tiles*)
+(defun tile-thing (tile) "Return the first cell of TILE, a thing, which can be grasped."
+  (fourth tile))
+(defun tile-target (tile) "Return the place of TILE, the cell (x y) of its first cell."
+  (second tile))
+(defun game-over-p () "True if the game has ended." (<= (* 2 steps*) (simulation-tick)))
+
+(defun held-tile ()
+  "Return the tile that the robot holds, or NIL."
+  (find-if #'held-p *tiles*))
+
+(defun held-p (tile) (eq (tile-thing tile) (hand-holding (robot-hand carrier 0))))
+
+(defun robot-cell () (list (floor (robot-x carrier)) (floor (robot-y carrier))))
+
+(defun anchor (tile)
+  "Return the cell (x y) of the first cell of TILE; if it is held, that of the robot."
+  (let ((thing (tile-thing tile)))
+    (if (held-p tile)
+        (robot-cell)
+        (list (floor (thing-x thing)) (floor (thing-y thing))))))
+
+(defun tile-in-place-p (tile)
+  "True if TILE lies in its place."
+  (and (not (held-p tile)) (equal (anchor tile) (tile-target tile))))
+
+(defun cells-at (place offsets)
+  (mapcar (lambda (offset) (mapcar #'+ place offset)) offsets))
+
+(defun on-floor-p (cells)
+  (every (lambda (cell) (and (<= 1 (first cell) 15) (<= 1 (second cell) 15))) cells))
+
+;; The things of a tile lie in the middle of their cells, where the first one is.
+(defkicker hold-together (clock) (:prob 1)
+  (incf *readings*)
+  (dolist (tile *tiles*)
+    (when (tile-in-place-p tile) (incf *in-place*))
+    (loop for (x y) in (cells-at (anchor tile) (third tile))
+          for thing in (cdddr tile)
+          unless (or (eq thing (hand-holding (robot-hand carrier 0)))
+                     (and (= (thing-x thing) (+ x .5)) (= (thing-y thing) (+ y .5))))
+            do (move-thing thing (+ x .5) (+ y .5)))))
+
+(defun freely-moving (tiles step)
+  "Return those of TILES that can move by STEP, (dx dy), all at once."
+  (let ((stuck (find-if (lambda (tile)
+                          (let ((cells (cells-at (mapcar #'+ (anchor tile) step) (third tile))))
+                            (not (and (on-floor-p cells)
+                                      (notany (lambda (other) (overlap-p cells other))
+                                              (set-difference *tiles* tiles :key #'first))))))
+                        tiles)))
+    (if stuck
+        (freely-moving (remove (first stuck) tiles :key #'first) step)
+        tiles)))
+
+(defun overlap-p (cells tile)
+  (and (not (held-p tile))
+       (intersection cells (cells-at (anchor tile) (third tile)) :test #'equal)))
+
+(defun blow (step)
+  "Move all loose tiles that can by STEP, (dx dy)."
+  (dolist (tile (freely-moving (remove-if #'held-p *tiles*) step))
+    (incf *blown*)
+    (destructuring-bind (x y) (mapcar #'+ (anchor tile) step)
+      (move-thing (tile-thing tile) (+ x .5) (+ y .5)))))
+
+(defun roll-below (count) (roll-index count (world-dice *world* :user)))
+
+(defkicker gust (clock) (:prob 0)
+  (run-kicker self (+ gust-interval* (roll-below (1+ (* 2 gust-interval*)))))
+  (let ((step (nth (roll-below 4) '((1 0) (-1 0) (0 1) (0 -1)))))
+    (loop repeat gust-strength* do (blow step))))
+
+;;; Setting up.
+
+(defun roll-offsets ()
+  "Return the offsets of a random polyomino. The first is (0 0)."
+  (loop with offsets = (list (list 0 0))
+        while (< (length offsets) tile-cells*)
+        do (let ((new (mapcar #'+ (nth (roll-below (length offsets)) offsets)
+                              (nth (roll-below 4) '((1 0) (-1 0) (0 1) (0 -1))))))
+             (unless (member new offsets :test #'equal)
+               (setf offsets (append offsets (list new)))))
+        finally (return offsets)))
+
+(defun roll-place (offsets taken)
+  "Return a place (x y) where a tile with OFFSETS lies on no cell of TAKEN."
+  (loop for place = (list (1+ (roll-below 15)) (1+ (roll-below 15)))
+        for cells = (cells-at place offsets)
+        when (and (on-floor-p cells) (not (intersection cells taken :test #'equal)))
+          return place))
+
+(defkicker lay-out (clock) (:prob 0)
+  (let ((cells '()) (targets '()))
+    (dotimes (id tile-count*)
+      (let* ((offsets (roll-offsets))
+             (target (roll-place offsets targets))
+             (here (cells-at (roll-place offsets cells) offsets)))
+        (setf cells (append here cells) targets (append (cells-at target offsets) targets))
+        (push (list* id target offsets
+                     (loop for (x y) in here
+                           for first = t then nil
+                           collect (make-new-thing
+                                    'tile (list* *world* (list (+ x .5) (+ y .5)))
+                                    `((:size 1) (:weight 1) (:tile ,id) (:color blue)
+                                      ,@(if first '((:handle t)))))))
+              *tiles*)))))
+
+(defmeasure in-place
+  "The share of the tiles that were in their places, the mean over the game, from 0 to 1."
+  (/ *in-place* (max 1 *readings*) tile-count*))
+
+(defmeasure blown "By how many cells the wind moved tiles." *blown*)
+
+;;; For agents.
+
+(defun continuing (then)
+  "Return a continuation that calls the function THEN, unless the command was interrupted."
+  (lambda (err &rest results)
+    (declare (ignore results))
+    (unless (eq err :interrupt) (funcall then))))
+
+(defun rest-a-step (then)
+  "Let the robot wait for a step, then call the function THEN."
+  (think carrier 2 (continuing then)))
+
+(defun step-to (place then)
+  "Let the robot take a step towards PLACE, a cell (x y), first along x; then call THEN."
+  (destructuring-bind (x y) place
+    (let ((dx (- x (floor (robot-x carrier)))) (dy (- y (floor (robot-y carrier)))))
+      (cond ((plusp dx) (robot-step carrier :east (continuing then)))
+            ((minusp dx) (robot-step carrier :west (continuing then)))
+            ((plusp dy) (robot-step carrier :south (continuing then)))
+            ((minusp dy) (robot-step carrier :north (continuing then)))
+            (t (rest-a-step then))))))
+
+(defun grasp-tile (tile then)
+  "Let the hand grasp TILE if its first cell is where the robot is; then call THEN."
+  (let ((camera (robot-camera carrier 0)))
+    (flet ((give-up () (camera-untrack camera (continuing then)))
+           (grasp (designator)
+             (hand-grasp-desig (robot-hand carrier 0) camera designator
+                               (continuing (lambda () (camera-untrack camera (continuing then)))))))
+      (camera-get-object-designator
+       camera :local `((:tile ,(first tile)) (:handle t))
+       (continuation (err camera designator)
+         (cond ((eq err :interrupt))
+               (err (give-up))
+               (t (camera-track camera designator
+                                (continuation (err camera designator)
+                                  (cond ((eq err :interrupt))
+                                        (err (give-up))
+                                        (t (grasp designator))))))))))))
+
+(defun put-down (then)
+  "Let the hand put down what it holds; then call THEN."
+  (hand-ungrasp (robot-hand carrier 0) (continuing then)))
+
+(defun play (agent)
+  "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
+  (robot-set-speed carrier max-speed*)
+  (robot-set-turn-angle carrier max-turn-angle*)
+  (run-ticks 1)
+  (dolist (kicker '(lay-out hold-together gust))
+    (run-kicker (set-kicker (find-thing 'clock) kicker)))
+  (run-ticks 1)
+  (start-agent agent)
+  (run-ticks (max 0 (- (* 2 steps*) (simulation-tick))))
+  t)
+
+;;; Agents. They carry the tile that takes the fewest steps, to its place and down.
+
+(defun steps-between (place other)
+  (+ (abs (- (first place) (first other))) (abs (- (second place) (second other)))))
+
+(defun effort (tile)
+  (+ (steps-between (robot-cell) (anchor tile)) (steps-between (anchor tile) (tile-target tile))))
+
+(defun next-tile ()
+  "Return the tile that is not in its place with the least effort, or NIL."
+  (let ((tiles (remove-if #'tile-in-place-p *tiles*)))
+    (first (stable-sort tiles #'< :key #'effort))))
+
+(defun carry (then)
+  "Carry the tile in the hand, if any, to its place and put it down; then call THEN."
+  (let ((tile (held-tile)))
+    (cond ((null tile) (funcall then))
+          ((equal (robot-cell) (tile-target tile)) (put-down then))
+          (t (step-to (tile-target tile) (lambda () (carry then)))))))
+
+(defun fetch (tile place-of then)
+  "Go to the place that PLACE-OF returns for TILE, grasp it and carry it away; then call THEN."
+  (let ((place (funcall place-of tile)))
+    (if (equal place (robot-cell))
+        (grasp-tile tile (lambda () (carry then)))
+        (step-to place (lambda () (fetch tile place-of then))))))
+
+(defun blind ()
+  (let ((tile (next-tile)))
+    (if tile
+        (let ((place (anchor tile))) (fetch tile (lambda (tile) (declare (ignore tile)) place) #'blind))
+        (rest-a-step #'blind))))
+
+(defun watchful ()
+  (let ((tile (next-tile)))
+    (if tile (fetch tile #'anchor #'watchful) (rest-a-step #'watchful))))
+
+(defun flexible ()
+  (let ((tile (next-tile)))
+    (cond ((null tile) (rest-a-step #'flexible))
+          ((equal (anchor tile) (robot-cell))
+           (grasp-tile tile (lambda () (carry #'flexible))))
+          (t (step-to (anchor tile) #'flexible)))))
+
+(defun idle ())
+
+(define-testbed tileworld-wind
+  "A robot carries tiles of several cells to their places, and gusts of wind move all that it does
+not hold. How far must it watch the tiles?"
+  (:rules "The floor has 15 x 15 cells. The robot starts in the middle and steps north, south, east
+or west; it can cross tiles."
+          "There are tile-count* tiles, random polyominoes of tile-cells* cells that move as one.
+Each has a place of its own. The hand grasps a tile by its first cell, where the robot stands, and
+carries it over others."
+          "The wind blows at random times, from half to one and a half times gust-interval*, from one
+of four sides. It moves all tiles that are not held by up to gust-strength* cells, until a wall or a
+tile that cannot move stops them."
+          "The score is the mean share of the tiles that lie in their places. All agents meet the same
+tiles, places and gusts.")
+  (:sources "Philips, Swanson, Drummond and Bresina, A design rationale for NASA TileWorld, NASA Ames
+1991.")
+  (:knobs steps* gust-interval* gust-strength* tile-count* tile-cells*)
+  (:agents (idle "Does nothing.")
+           (blind "Goes to where the tile was when it decided, and decides again if it is not there.")
+           (watchful "Follows its tile.")
+           (flexible "Takes, after each step, the tile that is the least effort now."))
+  (:robots carrier)
+  (:clean)
+  (:thinking :charged)
+  (:limit 10000000)
+  (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t) (step-duration* 2))
+  (:run (play agent))
+  (:score in-place)
+  (:measure blown)
+  (:seeds :tuning 1000000 :testing 0)
+  (:sweeps ((gust-interval* 5 10 20 40 80) (gust-strength* 2))
+           ((gust-strength* 0 1 2 4 8) (gust-interval* 20)))
+  (:claims
+   ("The more often the wind blows, the less the robot achieves."
+    (((gust-strength* 1)) ((gust-strength* 2)))
+    (:narrows watchful idle (gust-interval* 40 10)) (:narrows blind idle (gust-interval* 40 10)))
+   ("The stronger the wind, the less the robot achieves."
+    (((gust-interval* 10)) ((gust-interval* 20)))
+    (:narrows watchful idle (gust-strength* 1 4)) (:narrows blind idle (gust-strength* 1 4)))
+   ("Where the wind blows often, it helps to watch the tile, and more than where it rarely does."
+    (((gust-strength* 2)) ((gust-strength* 4)))
+    (:better watchful blind 0) (:narrows watchful blind (gust-interval* 5 40)))))
