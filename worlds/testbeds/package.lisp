@@ -15,8 +15,8 @@
            #:hole-interval* #:hole-life* #:hole-cells* #:score-spread* #:soft-bounds*
            #:tile-interval* #:tile-life* #:obstacle-interval* #:obstacle-life*
            #:deliberation-time* #:steps*
-           #:holes #:hole-id #:hole-cells #:hole-worth #:tiles #:obstacles #:utility #:find-hole #:plan-push
-           #:way-to-fill #:push-to #:spend-steps #:game-over-p #:play))
+           #:holes #:hole-id #:hole-cells #:hole-worth #:tiles #:obstacles #:utility #:find-hole
+           #:plan-push #:way-to-fill #:push-to #:spend-steps #:game-over-p #:play))
 
 (ars:define-user-package :ars-testbeds.wind
   (:documentation "NASA Tileworld: tiles of several cells, a robot that carries them, and wind.")

@@ -151,7 +151,8 @@
       (incf *score* (hole-worth hole))
       (incf *filled*))
     (setf *holes* (if rest
-                      (substitute (append (subseq hole 0 4) rest) (hole-id hole) *holes* :key #'hole-id)
+                      (substitute (append (subseq hole 0 4) rest) (hole-id hole) *holes*
+                                  :key #'hole-id)
                       (remove (hole-id hole) *holes* :key #'hole-id))
           *tiles* (remove tile *tiles*))
     (destroy-thing cell)
@@ -219,7 +220,8 @@ in the mean if nothing is filled."
           "An agent pays deliberation-time* for each hole that it considers. Planning pushes is
 free."
           "The share is the score divided by the scores of all holes. All agents meet the same
-holes, tiles and obstacles at the same times; those that find their cells occupied appear elsewhere.")
+holes, tiles and obstacles at the same times; those that find their cells occupied appear
+elsewhere.")
   (:sources "Pollack and Ringuette, Introducing the Tileworld: experimentally evaluating agent
 architectures, AAAI-90.")
   (:knobs steps* hole-interval* hole-life* hole-cells* score-spread* soft-bounds*
