@@ -253,8 +253,8 @@ or west; it can cross tiles."
 Each has a place of its own. The hand grasps a tile by its first cell, where the robot stands, and
 carries it over others."
           "The wind blows at random times, from half to one and a half times gust-interval*, from
-one of four sides. It moves all tiles that are not held by up to gust-strength* cells, until a wall or a
-tile that cannot move stops them."
+one of four sides. It moves all tiles that are not held by up to gust-strength* cells, until a wall
+or a tile that cannot move stops them."
           "The score is the mean share of the tiles that lie in their places. All agents meet the
 same tiles, places and gusts.")
   (:sources "Philips, Swanson, Drummond and Bresina, A design rationale for NASA TileWorld,
