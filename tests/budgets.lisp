@@ -9,7 +9,8 @@
 (defparameter *usual-budget* 3 "How many seconds a suite may take that *BUDGETS* does not name.")
 
 (defparameter *budgets*
-  '((clim 40) (testbeds 26) (testbeds-tiles 14) (random-driver 26) (abuse 26) (rpl 24) (newcomer 22)
+  '((clim 40) (testbeds 26) (testbeds-tiles 14) (random-driver 26) (abuse 26) (rpl 24)
+    (newcomer 22)
     (cli-scripts 22) (saving 18)
     (experiments-tables 14) (forking 14) (display 13) (our-manual 12) (experiments-series 12)
     (run-variables 11) (searching 11) (experiment-shell 11) (several-plans 10) (examples 10)
