@@ -37,7 +37,7 @@ unless somebody sets it."
   (dolist (parameter (ars:all-parameters))
     (let ((symbol (base:parameter-symbol parameter)))
       ;; Knobs of testbeds are those of programs.
-      (unless (eq (symbol-package symbol) (find-package :ars-testbeds))
+      (unless (equal "Testbeds" (base::parameter-group parameter))
         (is (eq (null (assoc symbol *printed-parameters*)) (base:addition-p symbol)) "~A" symbol))))
   (is (near .01 ars:false-thing-prob*))
   (is (= 1 ars:tick-quantum*)))
