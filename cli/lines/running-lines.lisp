@@ -60,7 +60,8 @@
         (format t "Tick ~D.~%" (simulation-tick simulation))
         (format t "~A~%" (time-description session simulation)))))
 
-(define-line "STEP" (session (n steps "how many; 1 if left out" :optional))
+(define-line "STEP" (session (n steps "how many (STEP-TO moves the robot to a cell); 1 if left out"
+                              :optional))
     (:running)
     "Let N ticks pass; a live simulator is paused after them."
   (if (session-trial session)
