@@ -329,14 +329,21 @@ describes a slot."
 
 (defun undefined-function-p (symbol)
   "True if code calls SYMBOL, which is not defined."
-  (and (sb-int:find-fdefn symbol) (not (fboundp symbol))))
+  (and (not (fboundp symbol)) (sb-int:find-fdefn symbol)))
+
+(defun calls-are-known-p ()
+  "True if this SBCL tells whether code calls a symbol. Later versions than 2.2.9 may not."
+  (ignore-errors (sb-int:find-fdefn 'car)))
 
 (test names.that-code-uses-are-defined
-  (dolist (package (layers))
-    (is (equal '() (names-in-use package #'undefined-variable-p)))
-    (is (equal '() (names-in-use package #'undefined-function-p)))))
+  (dolist (package (layers)) (is (equal '() (names-in-use package #'undefined-variable-p)))))
 
 (test names.that-are-not-defined-are-found
   (compile nil '(lambda () (declare #.host:*hot*) (doze-for-ever *hour-of-doom*)))
-  (is-true (undefined-function-p 'doze-for-ever))
-  (is-true (undefined-variable-p '*hour-of-doom*)))
+  (is-true (undefined-variable-p '*hour-of-doom*))
+  (cond ((calls-are-known-p)
+         (is-true (undefined-function-p 'doze-for-ever))
+         (dolist (package (layers))
+           (is (equal '() (remove 'doze-for-ever
+                                  (names-in-use package #'undefined-function-p))))))
+        (t (skip "This SBCL does not tell which functions code calls."))))
