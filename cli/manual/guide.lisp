@@ -136,7 +136,8 @@ HTML file. TOKENS are the HTML, with anchors at the headings."
 
 (defparameter *usage-files*
   '(("ars-magna" "usage.txt") ("ars-magna experiment" "usage-experiment.txt")
-    ("ars-magna merge" "usage-merge.txt") ("ars-magna compare" "usage-compare.txt"))
+    ("ars-magna merge" "usage-merge.txt") ("ars-magna compare" "usage-compare.txt")
+    ("ars-magna testbed" "usage-testbed.txt"))
   "Lists (command file): the option --help of the command prints the file.")
 
 (defun page-markdown (source)

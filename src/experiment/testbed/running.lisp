@@ -60,11 +60,12 @@ the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
   (string-downcase agent))
 
 (defun knob-line (name)
-  (let ((parameter (find-parameter name)))
+  (let* ((parameter (find-parameter name)) (default (parameter-default parameter)))
     (format nil "~A, ~A~@[ ~A~]; default ~(~A~). ~A" (parameter-name parameter)
             (describe-type (parameter-type parameter))
             (and (string/= "" (parameter-unit parameter)) (parameter-unit parameter))
-            (value-text (parameter-default parameter))
+            ;; As it can be typed.
+            (if (symbolp default) (prin1-to-string default) (value-text default))
             (one-line (parameter-sentence parameter)))))
 
 (defun write-testbed-section (title lines stream)

@@ -111,7 +111,7 @@ CLAUSES are those of DEFEXPERIMENT, except :vary and :seed, and these:
   (:knobs parameter...)    what can be varied: parameters, see DEFINE-KNOB
   (:agents (name string)...)  agents, each with a sentence. A name is that of a plan or function;
                            in the clause :run it is the value of the variable AGENT, see START-AGENT
-  (:score measure)         the measure that says how good an agent is: more is better
+  (:score measure)         the measure by which agents are compared
   (:seeds :tuning n :testing n)  trial T has the seed N + T: one N to write agents with, another to
                            test them
   (:sweeps ((knob value...) (knob value)...)...)  what the page of results varies, all else given
