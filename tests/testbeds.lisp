@@ -172,3 +172,19 @@
         (let ((page (page 1)))
           (is (search "| bold | " page))
           (is (string= page (page 2))))))))
+
+;;; Agents of the command.
+
+(defpackage :ars-test-bold (:use))
+(setf (fdefinition (intern "BOLD" :ars-test-bold)) (lambda () nil))
+
+(test testbed-command.finds-agents-by-name-and-refuses-those-of-two-packages
+  (let* ((testbed (experiment:find-testbed 'ars-testbeds:tileworld))
+         (names (mapcar #'first (experiment::testbed-agents testbed))))
+    (flet ((found (text) (mapcar #'package-name
+                                 (mapcar #'symbol-package (cli::agents-named text names)))))
+      (is (equal '("ARS-TESTBEDS") (found "cautious")))
+      (is (equal '("ARS-TESTBEDS") (found "ars-testbeds::bold")))
+      (is (equal '("ARS-TEST-BOLD") (found "ars-test-bold::bold")))
+      (is (= 2 (length (found "bold"))))
+      (is (null (found "nowhere::bold"))))))

@@ -21,16 +21,37 @@
         (reject-line "There is no testbed ~A.~@[ Did you mean ~A?~] Known: ~{~A~^, ~}."
                      name (nearest-name name names) names))))
 
+(defun full-name (symbol)
+  (format nil "~(~A::~A~)" (package-name (symbol-package symbol)) symbol))
+
+(defun agents-named (text names)
+  "Return the agents of the name or full name TEXT: those among NAMES, and plans and functions that
+are no agents of other testbeds."
+  (let* ((end (position #\: text))
+         (name (subseq text (if end (1+ (position #\: text :from-end t)) 0))))
+    (remove-if-not (lambda (symbol)
+                     (and (or (member symbol names)
+                              (and (users-symbol-p symbol) (agent-p symbol)
+                                   (notany (lambda (testbed)
+                                             (assoc symbol (testbed-agents testbed)))
+                                           (all-testbeds))))
+                          (or (null end)
+                              (eq (symbol-package symbol)
+                                  (find-package (string-upcase (subseq text 0 end)))))))
+                   (find-all-symbols (string-upcase name)))))
+
 (defun agent-named (text testbed)
   "Return the agent TEXT: one of TESTBED, or the name of a plan or function of the user."
-  (let ((names (mapcar #'first (testbed-agents testbed))))
-    (or (find text names :test #'string-equal)
-        (find-if (lambda (symbol) (and (users-symbol-p symbol) (agent-p symbol)))
-                 (find-all-symbols (string-upcase text)))
-        (reject-line "~A has no agent ~A, and no plan or function has that name.~@[ Did you mean ~
-                      ~A?~] Known: ~{~A~^, ~}. --load FILE loads an agent of your own."
-                     (string-downcase (testbed-name testbed)) text (nearest-name text names)
-                     (mapcar #'string-downcase names)))))
+  (let* ((names (mapcar #'first (testbed-agents testbed)))
+         (agents (agents-named text names)))
+    (cond ((rest agents)
+           (reject-line "There are several agents ~A: ~{~A~^, ~}. Rename yours, or use a full name."
+                        text (sort (mapcar #'full-name agents) #'string<)))
+          (agents (first agents))
+          (t (reject-line "~A has no agent ~A, and no plan or function has that name.~@[ Did you ~
+                           mean ~A?~] Known: ~{~A~^, ~}. --load FILE loads an agent of your own."
+                          (string-downcase (testbed-name testbed)) text (nearest-name text names)
+                          (mapcar #'string-downcase names))))))
 
 (defun knob-setting (setting testbed)
   "Return (symbol value) for SETTING, two strings."
