@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.basics)
 
-(export '(dice make-dice copy-dice mixed-word text-hash text-checksum digest make-digest digest-add
+(export '(dice copy-dice mixed-word text-hash text-checksum digest make-digest digest-add
           digest-add-word digest-add-identity))
 
 ;;; Dice are splitmix64 generators (Steele, Lea and Flood 2014): one 64-bit word of state, the same
@@ -69,8 +69,10 @@
   (declare #.*hot*)
   (characters-hash (string name) #'upper-code))
 
+(addition make-dice)
 (defun make-dice (seed &optional (purpose ""))
-  "Return dice that depend only on the integer SEED and on PURPOSE, a string designator."
+  "Return new dice that depend only on the integer SEED and on PURPOSE, a string designator. They do
+not change what the dice of a world roll. Signals WRONG-ARGUMENT unless SEED is an integer."
   (check-argument make-dice seed (integerp seed) "an integer")
   (%make-dice (mix-bits (logxor (mix-bits (ldb (byte 64 0) seed)) (text-hash purpose)))))
 

@@ -138,8 +138,7 @@ not change places."
 ;;; until they touch it.
 
 (defun dice-of (robot)
-  (ars-magna.base:make-dice (+ (* 100003 (world-seed *world*)) (simulation-tick))
-                            (robot-name robot)))
+  (make-dice (+ (* 100003 (world-seed *world*)) (simulation-tick)) (robot-name robot)))
 
 (defun draw-move (robot mix)
   "Return a move for ROBOT, from 0 to 4, drawn from MIX, five probabilities."

@@ -193,7 +193,7 @@
 
 (defun random-walk ()
   "Step in a random direction, again and again."
-  (let ((dice (ars-magna.base:make-dice (+ (world-seed *world*) (simulation-tick)) "walk"))
+  (let ((dice (make-dice (+ (world-seed *world*) (simulation-tick)) "walk"))
         (x (robot-x tiler)) (y (robot-y tiler)))
     (take-a-step (loop for (direction dx dy) = (roll-element '((:north 0 -1) (:south 0 1)
                                                                (:east 1 0) (:west -1 0))

@@ -179,7 +179,7 @@ directions, and then the tile; NIL if there is none."
 
 (defun random-walk ()
   "Push in a random direction, again and again."
-  (let ((dice (ars-magna.base:make-dice (+ (world-seed *world*) (simulation-tick)) "walk")))
+  (let ((dice (make-dice (+ (world-seed *world*) (simulation-tick)) "walk")))
     (push-to (first (roll-element *directions* dice))
              (lambda (err) (declare (ignore err)) (random-walk)))))
 

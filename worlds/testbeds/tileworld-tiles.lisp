@@ -62,7 +62,7 @@
 
 (defun new-dice ()
   "Return dice for something that appears. All agents meet the same, at the same times."
-  (ars-magna.base:make-dice (roll-index 1000000000 (world-dice *world* :user)) "appear"))
+  (make-dice (roll-index 1000000000 (world-dice *world* :user)) "appear"))
 
 (defun roll-ticks (steps dice)
   "Return ticks, from half to one and a half times STEPS."
