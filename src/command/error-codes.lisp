@@ -25,6 +25,8 @@ drive on; go-to and find-way avoid known obstacles. Another robot may move on if
     (:not-moving
      "The robot's speed is 0, so the robot would never arrive."
      "Set the robot's speed first: (robot-set-speed robot 0.8 nil).")
+    (:too-slow "At its speed and turn angle, the robot needs longer than step-duration*."
+     "Raise step-duration*, the robot's speed or its turn angle.")
     (:negative-speed "A speed was below 0. The robot's speed is 0 now."
      "Give a speed from 0 to max-speed*. To drive back, turn the robot round.")
     (:too-high-speed "A speed was above max-speed*. The robot's speed is max-speed* now."

@@ -73,14 +73,15 @@ position. TOLD lists the names of the arguments."
                          (lambda-list-of continuation)
                          told)))))
 
-;; Programs give the same continuation again and again; its lambda list is then the same list.
+;; Programs give the same continuation again and again; its lambda list is then the same list. Any
+;; thread may set the slot: each list in it has fitted.
 (defun check-continuation (command world continuation)
   "Warn once if CONTINUATION cannot take the arguments that COMMAND passes."
   (let ((list (and (functionp continuation) (lambda-list-of continuation))))
-    (unless (and list (eq list (command-fitting command)))
-      (warn-of-continuation command world continuation)
-      (when (and list (continuation-fits-p continuation (continuation-arguments command)))
-        (setf (command-fitting command) list)))))
+    (cond ((and list (eq list (command-fitting command))))
+          ((and list (continuation-fits-p continuation (continuation-arguments command)))
+           (setf (command-fitting command) list))
+          (t (warn-of-continuation command world continuation)))))
 
 ;;; One simulation inside another.
 

@@ -45,8 +45,7 @@ wall, a door or another robot is behind it."
                  (move-thing thing (+ (thing-x thing) columns) (+ (thing-y thing) rows))))))))
 
 (define-step push-on (operation (and (robot-p (operation-resource operation))
-                                     (typep (operation-subject operation)
-                                            '(cons double-float (cons tick-count null)))))
+                                     (typep (operation-subject operation) 'step-subject)))
   "Turn the robot for a tick or, if no angle is left, push what is in its way, and drive on."
   (let ((robot (operation-resource operation)))
     (destructuring-bind (angle end) (operation-subject operation)

@@ -5,8 +5,7 @@
 ;;; ROBOT-STEP turns the robot, and then drives it to the middle of a neighbouring cell. Every step
 ;;; that succeeds takes STEP-DURATION* ticks: if the movement takes less, the robot stands still for
 ;;; the rest. Noise is that of turns and drives. The direction is aimed from where the robot is
-;;; according to its main odometer or, if STEP-BY-GRID* is true, from where it is. The subject of
-;;; the operation is a list: the radians left to turn, and the tick in which the step is to end.
+;;; according to its main odometer or, if STEP-BY-GRID* is true, from where it is.
 
 (defparameter *step-directions*
   '((:north 0 -1) (:north-east 1 -1) (:east 1 0) (:south-east 1 1)
@@ -27,6 +26,10 @@ north-west"))
   "Return the arguments of ROBOT-STEP to keep: DIRECTION as a keyword."
   (declare (ignore robot))
   (list (first (find-step-direction direction))))
+
+(deftype step-subject ()
+  "The subject of a step: the radians left to turn, and the tick in which the step is to end."
+  '(cons double-float (cons tick-count null)))
 
 (defun aim-step (robot direction)
   "Return the angle, in radians, and then the distance, in metres, by which ROBOT must turn and
@@ -66,8 +69,7 @@ drive to the middle of the next cell in DIRECTION."
           (t (repeat-step operation)))))
 
 (define-step step-on (operation (and (robot-p (operation-resource operation))
-                                     (typep (operation-subject operation)
-                                            '(cons double-float (cons tick-count null)))))
+                                     (typep (operation-subject operation) 'step-subject)))
   "Turn the robot for a tick or, if no angle is left, drive it for a tick."
   (let ((robot (operation-resource operation)))
     (destructuring-bind (angle end) (operation-subject operation)
@@ -97,9 +99,7 @@ drive to the middle of the next cell in DIRECTION."
      (:arguments keyword-of-direction)
      (:errors (:robot-blocked "Robot is blocked")
               (:not-moving "Robot cannot move: its speed is 0")
-              (:too-slow "Robot cannot turn and drive a cell in the time of a step"
-                         "At its speed and turn angle, the robot needs longer than step-duration*."
-                         "Raise step-duration*, the robot's speed or its turn angle."))
+              (:too-slow "Robot cannot turn and drive a cell in the time of a step"))
      (:report () (phrase "Robot stepped ~(~A~)" (first (operation-arguments operation)))))
     "Turn ROBOT and drive it to the middle of the next cell in DIRECTION. A step takes
 STEP-DURATION* ticks, whatever its direction. The robot aims by its main odometer or, if
