@@ -173,6 +173,19 @@
           (is (search "| bold | " page))
           (is (string= page (page 2))))))))
 
+;;; Tables.
+
+(test run-testbed.records-the-knobs-that-were-set
+  (flet ((conditions (knobs)
+           (mapcar #'experiment:sample-condition
+                   (experiment:results-samples
+                    (experiment:run-testbed 'ars-testbeds:tileworld :stream nil :seeds 1
+                                            :agents '(ars-testbeds::naive) :knobs knobs)))))
+    (is (equal '("agent=naive holes*=10 dynamism*=4")
+               (conditions '((holes* 10) (dynamism* 4)))))
+    (is (equal '("agent=naive holes*=10 dynamism*=64")
+               (conditions '((holes* 10) (dynamism* 64)))))))
+
 ;;; Agents of the command.
 
 (defpackage :ars-test-bold (:use))

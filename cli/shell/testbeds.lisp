@@ -65,19 +65,13 @@ are no agents of other testbeds."
       (list symbol (handler-case (read-data-from-string text 0)
                      (error () (reject-line "~A of ~A is no value." text name)))))))
 
-(defun usual-directory (testbed options)
-  "Return the name of the directory for a table of TESTBED, another for other knobs and seeds."
-  (format nil "out/~A/"
-          (substitute #\_ #\/ (format nil "~(~A~)~:[~;-tuning~]~{-~{~(~A~)=~(~A~)~}~}"
-                                      (testbed-name testbed) (option-value :tuning options)
-                                      (sort (copy-list (option-values :knob options)) #'string<
-                                            :key #'first)))))
-
 (defun run-agents (testbed agents options)
   "Run AGENTS in TESTBED by OPTIONS. Print their scores and, of several, the differences."
   (let* ((knobs (loop for setting in (option-values :knob options)
                       collect (knob-setting setting testbed)))
-         (out (option-value :out options (usual-directory testbed options)))
+         (out (option-value :out options
+                            (format nil "out/~(~A~)~:[~;-tuning~]/" (testbed-name testbed)
+                                    (option-value :tuning options))))
          (results (run-testbed (testbed-name testbed)
                                :agents agents :knobs knobs
                                :seeds (option-value :seeds options 100)

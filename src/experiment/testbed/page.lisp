@@ -100,9 +100,8 @@ SWEEP varies, and a picture of the name PICTURE into DIRECTORY."
 (defun save-testbed-pages (directory &key (names :all) (seeds 100) (workers 1))
   "Run the testbeds NAMES, by default all, and write a page of results for each into DIRECTORY:
 NAME.md, with pictures beside it. Claims are checked on as many SEEDS; tables of all agents have a
-quarter of them. The page is the same on each machine and for any
-number of WORKERS. Return a list of the files. Signals UNKNOWN-NAME, and MISUSE if DIRECTORY cannot
-be made."
+quarter of them. The page is the same on each machine and for any number of WORKERS. Return a list
+of the files. Signals UNKNOWN-NAME, and MISUSE if DIRECTORY cannot be made."
   (let ((directory (ensure-store-directory directory)))
     (loop for testbed in (if (eq :all names) (all-testbeds) (mapcar #'find-testbed names))
           for file = (merge-pathnames (format nil "~(~A~).md" (testbed-name testbed)) directory)

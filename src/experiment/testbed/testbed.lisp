@@ -200,11 +200,11 @@ value...), varies a knob. Use the seeds for tuning if TUNING is true, else those
          (variable (first (getf options :variables)))
          (experiment
            (apply #'experiment-from-options (testbed-name testbed) (testbed-title testbed)
+                  ;; Settings are factors of one value each, so that a table records them.
                   :factors (list* (list (list variable) agents)
-                                  (and sweep (list (list (list (first sweep)) (rest sweep)))))
-                  :parameters (append (getf options :parameters)
-                                      (loop for (name value) in settings
-                                            collect (list (list name value) value)))
+                                  (loop for (name . values) in (append settings
+                                                                       (and sweep (list sweep)))
+                                        collect (list (list name) values)))
                   :seed seed
                   :form (testbed-form testbed)
                   :deciding (reseeded-clauses (testbed-deciding testbed) seed)
