@@ -8,7 +8,7 @@
 
 (defparameter *bare-moves* '((0 . 0) (1 . 0) (0 . 1) (-1 . 0) (0 . -1)))
 
-(defparameter *bare-rules* '(:weight 1 :metric :steps :diagonal :both :stays nil)
+(defparameter *bare-rules* '(:weight 1 :metric :steps :diagonal :both :stays nil :ties :random)
   "The knobs of the bare program.")
 
 (defun bare-rule (name) (getf *bare-rules* name))
@@ -69,7 +69,10 @@ those of the last robots."
 
 (defun bare-best (payoffs)
   (let* ((best (reduce #'max payoffs)) (share (/ (count best payoffs))))
-    (loop for payoff in payoffs collect (if (= best payoff) share 0))))
+    (if (eq :first (bare-rule :ties))
+        (loop for number below 5
+              collect (if (= number (position best payoffs)) 1 0))
+        (loop for payoff in payoffs collect (if (= best payoff) share 0)))))
 
 (defun bare-prey-mix ()
   (if (bare-rule :stays) '(1/5 1/5 1/5 1/5 1/5) '(0 1/4 1/4 1/4 1/4)))

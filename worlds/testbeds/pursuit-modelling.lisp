@@ -7,16 +7,26 @@
 
 ;;; A predator's payoff is by how much it has come nearer to the prey, and a
 ;;; weight for each quadrant that is held. At level 1 it expects all moves of the others to be
-;;; equally likely; at level N, that they choose at level N - 1. Equally good moves are equally
-;;; likely. The prey is always expected to move at random. A mix is five probabilities of moves.
+;;; equally likely; at level N, that they choose at level N - 1. TIES* decides between equally
+;;; good moves. The prey is always expected to move at random. A mix is five probabilities of moves.
 
-(defun add-payoffs (table at share cells after)
-  "Add SHARE of the payoff of each predator to TABLE, from the index AT on."
-  (declare (type cells cells after) (type reals table) (type fixnum at) (type double-float share)
-           (optimize speed))
+(defun quadrants-held (cells)
+  "Return how many quadrants around the prey hold a predator. The diagonals bound them."
+  (declare (type cells cells) (optimize speed))
+  (let ((last (1- (length cells))) (held 0))
+    (declare (type (integer 0 15) held))
+    (dotimes (i last (logcount held))
+      (multiple-value-bind (columns rows x-side y-side) (offsets (aref cells i) (aref cells last))
+        (let ((both (and (= columns rows) (eq diagonal* :both))))
+          (when (or both (> columns rows)) (setf held (logior held x-side)))
+          (when (or both (< columns rows)) (setf held (logior held y-side))))))))
+
+(defun add-payoffs (table at share weight cells after)
+  "Add SHARE of the payoff of each predator to TABLE, from the index AT on. A quadrant adds WEIGHT."
+  (declare (type cells cells after) (type reals table) (type (integer 0 93750) at)
+           (type double-float share weight) (optimize speed))
   (let* ((last (1- (length cells)))
-         (held (* (the double-float (float (the real quadrant-weight*) 1d0))
-                  (the (integer 0 4) (quadrants-held after)))))
+         (held (* weight (the (integer 0 4) (quadrants-held after)))))
     (dotimes (i last)
       (incf (aref table (+ at i))
             (* share (+ held (- (distance-to (aref cells i) (aref cells last))
@@ -27,7 +37,7 @@
 the index I + COUNT x J, where J has the moves as digits to the base of 5."
   (declare (type cells cells))
   (let* ((count (1- (length cells))) (first-move (if prey-stays* 0 1))
-         (share (/ 1d0 (- 5 first-move)))
+         (share (/ 1d0 (- 5 first-move))) (weight (coerce quadrant-weight* 'double-float))
          (joint-moves (reduce #'* (make-list count :initial-element 5)))
          (table (make-array (* count joint-moves) :element-type 'double-float
                                                   :initial-element 0d0))
@@ -39,19 +49,23 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
       (loop for move from first-move to 4
             do (setf (aref goals count) (next-cell (aref cells count) move))
                (move-all cells goals after)
-               (add-payoffs table (* count joint) share cells after)))))
+               (add-payoffs table (* count joint) share weight cells after)))))
 
 (defun expected-payoffs (table i mixes)
   "Return what each move of predator I brings if the others play MIXES, a vector."
-  (declare (type reals table) (type fixnum i) (type simple-vector mixes) (optimize speed))
+  (declare (type reals table) (type (integer 0 5) i) (type simple-vector mixes) (optimize speed))
   (let ((count (length mixes)) (sums (make-array 5 :element-type 'double-float)))
+    (declare (type (integer 1 6) count))
     (labels ((weigh (who joint weight move)
-               (declare (type fixnum who joint move) (type double-float weight))
+               (declare (type (integer -1 5) who) (type (integer 0 15624) joint)
+                        (type (integer 0 4) move) (type double-float weight))
                (cond ((zerop weight))
                      ((minusp who)
-                      (incf (aref sums move) (* weight (aref table (+ i (* count joint))))))
+                      (incf (aref sums move) (* weight (aref table (+ i (* count joint)))))
+                      nil)
                      (t (dotimes (its-move 5)
                           (let ((joint (+ its-move (* 5 joint))))
+                            (declare (type (integer 0 15624) joint))
                             (if (= who i)
                                 (weigh (1- who) joint weight its-move)
                                 (weigh (1- who) joint
@@ -61,14 +75,22 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
     sums))
 
 (defun best-mix (payoffs)
-  "Return the mix of the moves with the largest of PAYOFFS, five numbers."
+  "Return the mix of the moves with the largest of PAYOFFS, five numbers, by TIES*."
   (let* ((best (- (reduce #'max payoffs) 1d-9))
-         (share (/ 1d0 (count-if (lambda (payoff) (< best payoff)) payoffs))))
-    (map 'reals (lambda (payoff) (if (< best payoff) share 0d0)) payoffs)))
+         (moves (loop for payoff in (coerce payoffs 'list)
+                      for move from 0
+                      when (< best payoff) collect move)))
+    (uniform-mix (if (eq ties* :first) (list (first moves)) moves))))
+
+(defun uniform-mix (moves)
+  "Return the mix in which MOVES, numbers from 0 to 4, are equally likely."
+  (let ((mix (make-array 5 :element-type 'double-float :initial-element 0d0)))
+    (dolist (move moves mix)
+      (setf (aref mix move) (/ 1d0 (length moves))))))
 
 (defun all-mixes (cells level)
   (let ((table (payoffs cells))
-        (mixes (map 'vector (constantly (best-mix '(0 0 0 0 0))) (rest (coerce cells 'list)))))
+        (mixes (map 'vector (constantly (uniform-mix '(0 1 2 3 4))) (rest (coerce cells 'list)))))
     (loop repeat level
           do (setf mixes (coerce (loop for i below (length mixes)
                                        collect (best-mix (expected-payoffs table i mixes)))
@@ -77,7 +99,7 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
 
 (defun modelled-moves (cells level)
   "Return a vector of the mixes that the predators choose at LEVEL, by number."
-  (let ((key (list cells level prey-stays* metric* diagonal* quadrant-weight*))
+  (let ((key (list cells level prey-stays* metric* diagonal* quadrant-weight* ties*))
         (last *last-mixes*))
     (if (equalp key (first last))
         (rest last)

@@ -4,9 +4,9 @@
   (:documentation "The testbed of pursuit: predators that model one another surround a prey.")
   (:export #:pursuit #:prey #:predator-1 #:predator-2 #:predator-3 #:predator-4 #:predator-5
            #:predator-6 #:predators* #:order* #:contested* #:prey-stays* #:metric* #:diagonal*
-           #:quadrant-weight* #:time-limit* #:capture-time #:captured #:least-time #:predators
-           #:current-cells #:next-cell #:cells-after #:distance-to #:quadrants-held #:captured-p
-           #:game-over-p #:draw-move #:modelled-moves #:play-pursuit #:hunt))
+           #:quadrant-weight* #:ties* #:time-limit* #:capture-time #:captured #:least-time
+           #:predators #:current-cells #:next-cell #:cells-after #:distance-to #:quadrants-held
+           #:captured-p #:game-over-p #:draw-move #:modelled-moves #:play-pursuit #:hunt))
 
 (in-package :ars-pursuit)
 (in-readtable :nisp)
@@ -23,6 +23,9 @@
   "To which quadrants a cell on a diagonal belongs: to both beside it, or to none.")
 (define-knob quadrant-weight* 1 "cells" (real 0 100)
   "What a quadrant that is held adds to a payoff, as if the predator came so much nearer.")
+(define-knob ties* :random "" (member :random :first)
+  "Whether a predator draws among equally good moves, or takes the first: to stay, then east, south,
+west, north.")
 (define-knob time-limit* 500 "rounds" (integer 1 10000) "After how many rounds the prey escapes.")
 
 ;;; The world. A predator that does not take part stands in the lane below the field.
@@ -114,17 +117,6 @@ not change places."
 (defun cells-after (cells moves)
   "Return the cells in which robots from CELLS are that all make their MOVES at once."
   (move-all cells (map 'cells #'next-cell cells moves) (copy-seq cells)))
-
-(defun quadrants-held (cells)
-  "Return how many quadrants around the prey hold a predator. The diagonals bound them."
-  (declare (type cells cells) (optimize speed))
-  (let ((last (1- (length cells))) (held 0))
-    (declare (type (integer 0 15) held))
-    (dotimes (i last (logcount held))
-      (multiple-value-bind (columns rows x-side y-side) (offsets (aref cells i) (aref cells last))
-        (let ((both (and (= columns rows) (eq diagonal* :both))))
-          (when (or both (> columns rows)) (setf held (logior held x-side)))
-          (when (or both (< columns rows)) (setf held (logior held y-side))))))))
 
 (defun captured-p (&optional (cells (current-cells)))
   "True if the prey cannot move: a predator or wall is on each side of it."
@@ -272,7 +264,8 @@ quadrant-weight* for each of the four quadrants around the prey that holds a pre
   (:sources "Vidal and Durfee, Recursive agent modeling using limited rationality, ICMAS-95."
             "Vidal and Durfee, Using recursive agent models effectively, Intelligent Agents II,
 1996.")
-  (:knobs predators* order* contested* prey-stays* metric* diagonal* quadrant-weight* time-limit*)
+  (:knobs predators* order* contested* prey-stays* metric* diagonal* quadrant-weight* ties*
+          time-limit*)
   (:agents (still "Stands. The prey escapes.")
            (random-walk "Moves at random.")
            (greedy "Minimizes each predator's distance to the prey, whatever the others do.")
