@@ -204,8 +204,9 @@
    (:module "worlds/testbeds" :serial t
     :components ((:file "package") (:file "tileworld-holes") (:file "tileworld-cameras")
                  (:file "tileworld-foresight") (:file "tileworld-tiles")
-                 (:file "tileworld-tiles-agents") (:file "tileworld-wind") (:file "pursuit")
-                 (:file "pursuit-modelling")))))
+                 (:file "tileworld-tiles-agents") (:file "tileworld-tiles-camera")
+                 (:file "tileworld-wind") (:file "tileworld-wind-agents")
+                 (:file "pursuit") (:file "pursuit-modelling")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"
@@ -430,7 +431,7 @@
                  (:file "experiments-series") (:file "experiments-series-tables")
                  (:file "thinking-experiments") (:file "tileworld-bare") (:file "testbeds")
                  (:file "pursuit-bare") (:file "testbeds-pursuit")
-                 (:file "testbeds-tiles")
+                 (:file "testbeds-tiles") (:file "testbeds-agents")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

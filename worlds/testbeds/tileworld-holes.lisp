@@ -234,7 +234,7 @@ along x. Without a hole they look again after the time of a step."
           "Effectiveness is the sum of the scores of the filled holes as a share of those of all
 holes. All agents meet the same holes.")
   (:sources "Kinny and Georgeff, Commitment and effectiveness of situated agents, IJCAI-91."
-            "Schut and Wooldridge, Intention reconsideration in complex environments, Agents 2000."
+            "Schut and Wooldridge, Principles of intention reconsideration, Agents 2001."
             "Pollack and Ringuette, Introducing the Tileworld, AAAI-90.")
   (:knobs dynamism* planning-time* holes* directions*)
   (:agents (random-walk "Steps in random directions.")

@@ -12,20 +12,20 @@
 
 (defun cell-code (thing) (+ (* 16 (floor (thing-y thing))) (floor (thing-x thing))))
 
-(defun solid-cells (tile)
-  "Return a bit for each cell: 1 for a wall, an obstacle, or another tile than TILE."
+(defun mark-cells (cells bits)
+  "Set the BITS of CELLS to 1; return BITS."
+  (dolist (cell cells bits) (setf (sbit bits cell) 1)))
+
+(defun solid-bits (cells)
+  "Return a bit for each cell: 1 for a wall and for CELLS."
   (let ((bits (make-array 272 :element-type 'bit :initial-element 1)))
     (loop for y from 1 to 15
           do (fill bits 0 :start (+ (* 16 y) 1) :end (+ (* 16 y) 16)))
-    (dolist (thing (append *tiles* *obstacles*) bits)
-      (unless (eq thing tile) (setf (sbit bits (cell-code thing)) 1)))))
+    (mark-cells cells bits)))
 
-(defun pit-cells (hole)
-  "Return a bit for each cell: 1 for those of other holes than HOLE."
-  (let ((bits (make-array 272 :element-type 'bit :initial-element 0)))
-    (dolist (other *holes* bits)
-      (unless (= (hole-id other) (hole-id hole))
-        (dolist (cell (hole-cells other)) (setf (sbit bits (cell-code cell)) 1))))))
+(defun pit-bits (cells)
+  "Return a bit for each cell: 1 for CELLS."
+  (mark-cells cells (make-array 272 :element-type 'bit :initial-element 0)))
 
 (defun search-pushes (agent tile goals solid pits)
   "Search from the cells AGENT and TILE until the tile is in one of GOALS. Return the last state and
@@ -55,12 +55,12 @@ how each state was reached, or NIL."
                               (return-from search-pushes (values next moves)))))))
           while queue)))
 
-(defun plan-push (tile hole)
-  "Return the shortest list of directions in which the agent must go to push TILE into a cell of
-HOLE, or NIL if there is none."
-  (multiple-value-bind (state moves)
-      (search-pushes (+ (* 16 (floor (robot-y pusher))) (floor (robot-x pusher))) (cell-code tile)
-                     (mapcar #'cell-code (hole-cells hole)) (solid-cells tile) (pit-cells hole))
+(defun agent-cell () (+ (* 16 (floor (robot-y pusher))) (floor (robot-x pusher))))
+
+(defun plan-way (tile goals solid pits)
+  "Return the shortest list of directions in which the agent must go to push what is in the cell
+TILE into one of the cells GOALS, or NIL if there is none."
+  (multiple-value-bind (state moves) (search-pushes (agent-cell) tile goals solid pits)
     (when state
       (loop for move = (aref moves state)
             until (= 255 move)
@@ -68,6 +68,16 @@ HOLE, or NIL if there is none."
             collect direction into way
             do (decf state (+ (* 256 step) (if (< 4 move) step 0)))
             finally (return (nreverse way))))))
+
+(defun plan-push (tile hole)
+  "Return the shortest list of directions in which the agent must go to push TILE into a cell of
+HOLE, or NIL if there is none."
+  (plan-way (cell-code tile)
+            (mapcar #'cell-code (hole-cells hole))
+            (solid-bits (mapcar #'cell-code (remove tile (append *tiles* *obstacles*))))
+            (pit-bits (loop for other in *holes*
+                            unless (= (hole-id other) (hole-id hole))
+                              append (mapcar #'cell-code (hole-cells other))))))
 
 ;;; Choosing.
 

@@ -56,9 +56,9 @@
 (defmap tile-floor (19 17)
   (rect (0 0) (16 16) bricks 10)
   (rect (16 0) (18 2) bricks 10)
-  (obj clock (17.5 1.5) ((:size 1))))
+  (obj clock (17.5 1.5) ((:size 1) (:hole 0) (:score 0))))
 
-(defrobot pusher (tile-floor (8.5 8.5) 0))
+(defrobot pusher (tile-floor (8.5 8.5) 0) :cameras ((6.28 1000)))
 
 (defun new-dice ()
   "Return dice for something that appears. All agents meet the same, at the same times."
@@ -106,7 +106,8 @@
          (now (simulation-tick)))
     (when cells
       (push (list* id score now (+ now life)
-                   (put-things 'hole cells life `((:hole ,id) (:color violet))))
+                   (put-things 'hole cells life
+                               `((:hole ,id) (:score ,score) (:color violet))))
             *holes*))))
 
 (defun drop-tile (dice)
@@ -234,12 +235,14 @@ architectures, AAAI-90.")
            (filtered "By utility, but a new hole is considered only if it scores at least as much as
 its own.")
            (bold "By utility, but a new hole is considered only if it scores 100 more.")
+           (by-utility-camera "By utility, but sees by its camera, before each hole that it fills.")
            (look-ahead "By utility, but tries the three best holes in forks of the run."))
   (:robots pusher)
   (:clean)
   (:thinking :charged)
   (:limit 10000000)
-  (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t) (step-duration* 2))
+  (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t) (step-duration* 2)
+               (camera-desig-delay* 1) (scan-density* 1000))
   (:run (play agent))
   (:score share)
   (:measure filled bound)

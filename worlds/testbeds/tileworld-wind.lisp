@@ -20,19 +20,24 @@
 (define-run-variable *readings* 0 "How many ticks the tiles have been watched.")
 (define-run-variable *in-place* 0 "The sum, over these ticks, of how many tiles are in place.")
 (define-run-variable *blown* 0 "By how many cells the wind has moved tiles.")
+(define-run-variable *gusts* '() "The ticks of all gusts so far, since the tiles were laid out.")
+(define-run-variable *laid-out* 0 "The tick in which the tiles were laid out.")
+(define-run-variable *ways* '()
+  "Lists (steps steps), one for each tile at the start: from the robot to it, and to its place.")
 
 (defmap windy-floor (19 17)
   (rect (0 0) (16 16) bricks 10)
   (rect (16 0) (18 2) bricks 10)
   (obj clock (17.5 1.5) ((:size 1))))
 
-(defrobot carrier (windy-floor (8.5 8.5) 0) :cameras (((/ pi 2) 20)) :hands (100))
+(defrobot carrier (windy-floor (8.5 8.5) 0) :cameras ((6.28 1000)) :hands (100))
 
 (defun tiles () "Return a list of the tiles." *tiles*)
 (defun tile-thing (tile) "Return the first cell of TILE, a thing, which can be grasped."
   (fourth tile))
 (defun tile-target (tile) "Return the place of TILE, the cell (x y) of its first cell."
   (second tile))
+(defun find-tile (id) "Return the tile with the number ID." (assoc id *tiles*))
 (defun game-over-p () "True if the game has ended." (<= (* 2 steps*) (simulation-tick)))
 
 (defun held-tile ()
@@ -54,13 +59,17 @@
   "True if TILE lies in its place."
   (and (not (held-p tile)) (equal (anchor tile) (tile-target tile))))
 
+(defun steps-between (place other)
+  (+ (abs (- (first place) (first other))) (abs (- (second place) (second other)))))
+
 (defun cells-at (place offsets)
   (mapcar (lambda (offset) (mapcar #'+ place offset)) offsets))
 
 (defun on-floor-p (cells)
   (every (lambda (cell) (and (<= 1 (first cell) 15) (<= 1 (second cell) 15))) cells))
 
-;; The things of a tile lie in the middle of their cells, where the first one is.
+;; The things of a tile lie in the middle of their cells, where the first one is. If the hand holds
+;; it near a wall, things that would be behind the wall stay where they are.
 (defkicker hold-together (clock) (:prob 1)
   (incf *readings*)
   (dolist (tile *tiles*)
@@ -68,6 +77,7 @@
     (loop for (x y) in (cells-at (anchor tile) (third tile))
           for thing in (cdddr tile)
           unless (or (eq thing (hand-holding (robot-hand carrier 0)))
+                     (not (on-floor-p (list (list x y))))
                      (and (= (thing-x thing) (+ x .5)) (= (thing-y thing) (+ y .5))))
             do (move-thing thing (+ x .5) (+ y .5)))))
 
@@ -98,6 +108,7 @@
 
 (defkicker gust (clock) (:prob 0)
   (run-kicker self (+ gust-interval* (roll-below (1+ (* 2 gust-interval*)))))
+  (push (- (simulation-tick) *laid-out*) *gusts*)
   (let ((step (nth (roll-below 4) '((1 0) (-1 0) (0 1) (0 -1)))))
     (loop repeat gust-strength* do (blow step))))
 
@@ -134,11 +145,37 @@
                                     'tile (list* *world* (list (+ x .5) (+ y .5)))
                                     `((:size 1) (:weight 1) (:tile ,id) (:color blue)
                                       ,@(if first '((:handle t)))))))
-              *tiles*)))))
+              *tiles*)))
+    (setf *laid-out* (simulation-tick)
+          *ways* (loop for tile in *tiles*
+                       collect (list (steps-between (robot-cell) (anchor tile))
+                                     (steps-between (anchor tile) (tile-target tile)))))))
 
 (defmeasure in-place
   "The share of the tiles that were in their places, the mean over the game, from 0 to 1."
   (/ *in-place* (max 1 *readings*) tile-count*))
+
+(defun steps-needed (count help)
+  "Return how many steps bring COUNT tiles to their places if the wind helps by HELP cells a tile:
+the way to the nearest tile, and the shortest ways of tiles to their places, one after the other."
+  (let* ((ways (sort (mapcar #'second *ways*) #'<))
+         (left (remove-if-not #'plusp (mapcar (lambda (way) (- way help)) (subseq ways 0 count)))))
+    (if left
+        (reduce #'+ left :initial-value (max 0 (- (reduce #'min *ways* :key #'first) help)))
+        0)))
+
+(defun earliest-tick (count)
+  "Return the tick in which COUNT tiles may be in their places at the earliest."
+  (loop for tick from 0
+        for help = (* gust-strength* (count-if (lambda (gust) (<= gust tick)) *gusts*))
+        when (<= (* 2 (steps-needed count help)) tick) return tick))
+
+(defmeasure bound
+  "The share if all gusts help to bring tiles to their places, and none moves a tile from there. No
+agent that moves by steps has more."
+  (/ (loop for count from 1 to tile-count*
+           sum (max 0 (min *readings* (- *readings* (earliest-tick count) -1))))
+     (max 1 *readings*) tile-count*))
 
 (defmeasure blown "By how many cells the wind moved tiles." *blown*)
 
@@ -183,8 +220,11 @@
                                         (t (grasp designator))))))))))))
 
 (defun put-down (then)
-  "Let the hand put down what it holds; then call THEN."
-  (hand-ungrasp (robot-hand carrier 0) (continuing then)))
+  "Let the hand put down what it holds, if all of the tile fits on the floor here; then call THEN."
+  (let ((tile (held-tile)))
+    (if (and tile (not (on-floor-p (cells-at (robot-cell) (third tile)))))
+        (rest-a-step then)
+        (hand-ungrasp (robot-hand carrier 0) (continuing then)))))
 
 (defun play (agent)
   "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
@@ -198,52 +238,6 @@
   (run-ticks (max 0 (- (* 2 steps*) (simulation-tick))))
   t)
 
-;;; Agents. They carry the tile that takes the fewest steps, to its place and down.
-
-(defun steps-between (place other)
-  (+ (abs (- (first place) (first other))) (abs (- (second place) (second other)))))
-
-(defun effort (tile)
-  (+ (steps-between (robot-cell) (anchor tile)) (steps-between (anchor tile) (tile-target tile))))
-
-(defun next-tile ()
-  "Return the tile that is not in its place with the least effort, or NIL."
-  (let ((tiles (remove-if #'tile-in-place-p *tiles*)))
-    (first (stable-sort tiles #'< :key #'effort))))
-
-(defun carry (then)
-  "Carry the tile in the hand, if any, to its place and put it down; then call THEN."
-  (let ((tile (held-tile)))
-    (cond ((null tile) (funcall then))
-          ((equal (robot-cell) (tile-target tile)) (put-down then))
-          (t (step-to (tile-target tile) (lambda () (carry then)))))))
-
-(defun fetch (tile place-of then)
-  "Go to the place that PLACE-OF returns for TILE, grasp it and carry it away; then call THEN."
-  (let ((place (funcall place-of tile)))
-    (if (equal place (robot-cell))
-        (grasp-tile tile (lambda () (carry then)))
-        (step-to place (lambda () (fetch tile place-of then))))))
-
-(defun blind ()
-  (let ((tile (next-tile)))
-    (if tile
-        (fetch tile (constantly (anchor tile)) #'blind)
-        (rest-a-step #'blind))))
-
-(defun watchful ()
-  (let ((tile (next-tile)))
-    (if tile (fetch tile #'anchor #'watchful) (rest-a-step #'watchful))))
-
-(defun flexible ()
-  (let ((tile (next-tile)))
-    (cond ((null tile) (rest-a-step #'flexible))
-          ((equal (anchor tile) (robot-cell))
-           (grasp-tile tile (lambda () (carry #'flexible))))
-          (t (step-to (anchor tile) #'flexible)))))
-
-(defun idle ())
-
 (define-testbed tileworld-wind
   "A robot carries tiles of several cells to their places, and gusts of wind move all that it does
 not hold. How far must it watch the tiles?"
@@ -251,7 +245,7 @@ not hold. How far must it watch the tiles?"
 or west; it can cross tiles."
           "There are tile-count* tiles, random polyominoes of tile-cells* cells that move as one.
 Each has a place of its own. The hand grasps a tile by its first cell, where the robot stands, and
-carries it over others."
+carries it over others. It puts a tile down only where all of it fits on the floor."
           "The wind blows at random times, from half to one and a half times gust-interval*, from
 one of four sides. It moves all tiles that are not held by up to gust-strength* cells, until a wall
 or a tile that cannot move stops them."
@@ -261,17 +255,23 @@ same tiles, places and gusts.")
 NASA Ames 1991.")
   (:knobs steps* gust-interval* gust-strength* tile-count* tile-cells*)
   (:agents (idle "Does nothing.")
-           (blind "Goes to where the tile was when it decided, then decides again.")
+           (random-walk "Steps in random directions; grasps and puts down tiles at random.")
+           (blind "Naive: goes to where the tile was when it decided, then decides again.")
            (watchful "Follows its tile.")
-           (flexible "Takes, after each step, the tile that is the least effort now."))
+           (flexible "Takes, after each step, the tile that is the least effort now.")
+           (blind-camera "Blind, and sees tiles by its camera when it decides.")
+           (flexible-camera "Sees tiles by its camera, and decides again after 4 steps.")
+           (look-ahead "Tries each tile in forks of the run in which no wind blows.")
+           (clairvoyant "As look-ahead, but in its forks the wind blows as it will."))
   (:robots carrier)
   (:clean)
   (:thinking :charged)
   (:limit 10000000)
-  (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t) (step-duration* 2))
+  (:parameters (max-speed* 2) (max-turn-angle* 4) (step-by-grid* t) (step-duration* 2)
+               (scan-density* 1000))
   (:run (play agent))
   (:score in-place)
-  (:measure blown)
+  (:measure blown bound)
   (:seeds :tuning 1000000 :testing 0)
   (:sweeps ((gust-interval* 5 10 20 40 80) (gust-strength* 2))
            ((gust-strength* 0 1 2 4 8) (gust-interval* 20)))
