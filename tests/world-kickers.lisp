@@ -231,6 +231,18 @@ between one thing's kicks with the geometric law, as a draw per thing and tick w
       (is (null world:self))
       (signals base:wrong-argument (world:run-kicker nil)))))
 
+(test run-kicker.runs-each-kicker-in-its-tick-whatever-the-order-of-requests
+  (with-own-definitions
+    (let ((world (open-world)) (runs '()))
+      (world:define-kicker 'note :prob 0
+        :body (lambda (thing)
+                (push (list (world:thing-serial thing) (world::world-kicker-tick world)) runs)))
+      (let ((kickers (loop repeat 4 collect (world:set-kicker (thing-in world 'box 1 1) 'note))))
+        (mapc #'world:run-kicker kickers '(9 3 7 5))
+        (mapc #'world:run-kicker (subseq kickers 1 3) '(8 2)))
+      (run-world world 10)
+      (is (equal '((3 2) (4 5) (2 8) (1 9)) (reverse runs))))))
+
 (test run-kicker.goes-on-as-a-trajectory
   (with-own-definitions
     (let* ((world (open-world)) (ball (thing-in world 'ball 1 1)))

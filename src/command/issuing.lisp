@@ -124,8 +124,8 @@ position. TOLD lists the names of the arguments."
 (defun operation-just-begun (resource timeline)
   "Return RESOURCE's operation if it began in the last tick of a live run and takes time, or NIL."
   (let ((event (resource-event resource)))
-    (and (live-p timeline)
-         (operation-p event)
+    (and (operation-p event)
+         (live-p timeline)
          (takes-time-p (operation-command event))
          (<= (timeline-tick timeline) (1+ (operation-asked event)))
          event)))

@@ -38,17 +38,27 @@ drive to the middle of the next cell in DIRECTION."
       (if step-by-grid*
           (values (robot-x robot) (robot-y robot) (robot-angle robot))
           (odometer-estimate (robot-main-odometer robot)))
+    (declare (type (double-float -1d15 1d15) x y))
     (destructuring-bind (columns rows) (rest (find-step-direction direction))
-      (let* ((dx (- (+ (ffloor x) columns 0.5d0) x))
-             (dy (- (+ (ffloor y) rows 0.5d0) y))
+      (declare (type (integer -1 1) columns rows))
+      (let* ((dx (- (+ (floor x) columns 0.5d0) x))
+             (dy (- (+ (floor y) rows 0.5d0) y))
              (angle (angle-difference (atan2 dy dx) heading)))
+        (declare (type double-float angle))
         (values (if (< (abs angle) +facing+) 0d0 angle)
-                (sqrt (+ (* dx dx) (* dy dy))))))))
+                (sqrt (the (double-float 0d0) (+ (* dx dx) (* dy dy)))))))))
+
+(defun ticks-to-cover (size step)
+  "Return how many ticks a movement of SIZE takes, if it covers at most STEP in a tick."
+  (declare (type double-float size step))
+  (cond ((zerop size) 0)
+        ((<= size step) 1)
+        (t (values (ceiling size step)))))
 
 (defun time-to-move (robot angle distance)
   "Return how many ticks, without noise, ROBOT needs to turn by ANGLE and then to drive DISTANCE."
-  (+ (ceiling (abs angle) (* (robot-turn-angle-now robot) (double tick-quantum*)))
-     (ceiling distance (tick-distance robot))))
+  (+ (ticks-to-cover (abs angle) (* (robot-turn-angle-now robot) (double tick-quantum*)))
+     (ticks-to-cover distance (tick-distance robot))))
 
 (defun end-step (operation tick)
   "End OPERATION, whose robot has arrived, in TICK."

@@ -25,6 +25,7 @@
   (sentence "" string "what the parameter means" :addition)
   (digested-p t boolean
               "digests include even the default of the parameter; see DIGEST-PARAMETERS"))
+(declaim-final parameter)
 
 (addition parameter-name)
 (defun parameter-name (parameter)

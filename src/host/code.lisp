@@ -94,8 +94,13 @@ other functions, constants and closed-over values. Numbers, characters and strin
                (when (closure-p function) (closure-values function))))))
 
 (defun lambda-list-of (name)
-  "Return the lambda list of NAME: a function, or the name of a function or macro."
-  (sb-introspect:function-lambda-list name))
+  "Return the lambda list of NAME: a function, or the name of a function or macro. The second value
+is true if it is not known."
+  (let ((list (and (closure-p name) (declared-lambda-list name))))
+    ;; Continuations are closures, and are checked whenever a command is issued.
+    (if (typep list 'cons)
+        list
+        (sb-introspect:function-lambda-list name))))
 
 (defun accepts-count-p (lambda-list count)
   "True if a function with LAMBDA-LIST accepts COUNT arguments, counting keywords and their values."

@@ -161,12 +161,19 @@ error in an init form is signalled when the variable is first used, since many r
       (unless (third entry) (swap-if-eq (car (cddr entry)) nil :read))
       (copied-value (second entry)))))
 
+(defun move-variable-entry-to-front (entry world)
+  "Move ENTRY to the front of the run variables of WORLD, so that it is found fast."
+  (with-lock (*run-variables-lock*)
+    (setf (world-run-variables world) (cons entry (remove entry (world-run-variables world))))))
+
+;; Many variables are defined. A run sets few of them, but often.
 (defun store-run-variable (name value world)
   (let ((entry (find-variable-entry name world)))
-    (if entry
-        (setf (second entry) value
-              (third entry) :set)
-        (add-variable-entry name value :set world))))
+    (cond (entry
+           (unless (eq :set (third entry)) (move-variable-entry-to-front entry world))
+           (setf (second entry) value
+                 (third entry) :set))
+          (t (add-variable-entry name value :set world)))))
 
 (defun set-run-variable (name value)
   "Set the run variable NAME to VALUE in the current run. Return VALUE."

@@ -199,9 +199,11 @@ requests. Any thread may do so. Return nothing. Signals MISUSE if the run is ove
 first; in each group, the oldest comes first."
   (loop for inbox = (timeline-inbox timeline)
         when (swap-if-eq (timeline-inbox timeline) inbox '())
-          return (let ((requests (reverse inbox)))
-                   (append (remove-if-not #'requested-inside-tick-p requests)
-                           (remove-if #'requested-inside-tick-p requests)))))
+          return (if (rest inbox)
+                     (let ((requests (reverse inbox)))
+                       (append (remove-if-not #'requested-inside-tick-p requests)
+                               (remove-if #'requested-inside-tick-p requests)))
+                     inbox)))
 
 ;;; Notifications.
 

@@ -220,12 +220,14 @@ it is retried. In a large group, memory is read ahead if the first member to run
 
 (defun take-due-kickers (world tick)
   "Remove from WORLD, and return, the attachments due in TICK, in the order of the requests."
-  (let ((later '()) (due '()))
+  (let ((later '()) (due '()) (next 0))
     (dolist (attachment (world-due-kickers world))
-      (if (= tick (attachment-due attachment))
-          (push attachment due)
-          (push attachment later)))
-    (setf (world-due-kickers world) (nreverse later))
+      (let ((time (attachment-due attachment)))
+        (cond ((= tick time) (push attachment due))
+              (t (setf next (if later (min next time) time))
+                 (push attachment later)))))
+    (setf (world-due-kickers world) (nreverse later)
+          (world-next-due world) next)
     due))
 
 (defun run-all-kickers (world)
@@ -247,9 +249,7 @@ it is retried. In a large group, memory is read ahead if the first member to run
   "True if the only kickers of WORLD that may run are requested for later ticks than the next."
   (and (null (world-kicker-groups world))
        (= (world-kicker-generation world) *kicker-generation*)
-       (loop with next = (1+ (world-kicker-tick world))
-             for attachment in (world-due-kickers world)
-             never (= next (attachment-due attachment)))))
+       (< (1+ (world-kicker-tick world)) (world-next-due world))))
 
 (defun run-kickers (world)
   "Run the kickers of all things in WORLD for one tick: first those that RUN-KICKER has requested,
@@ -270,8 +270,12 @@ the tick (manual 5.3.1). Return nothing. Signals WRONG-ARGUMENT. See reading 170
   (let ((world (world-of-living-thing (attachment-thing attachment))))
     (when (and world (attachment-alive-p attachment))
       (changing (world run-kicker attachment ticks)
-        (let ((requested-p (> (attachment-due attachment) (world-kicker-tick world))))
-          (setf (attachment-due attachment) (+ ticks (world-kicker-tick world)))
+        (let ((requested-p (> (attachment-due attachment) (world-kicker-tick world)))
+              (due (+ ticks (world-kicker-tick world))))
+          (setf (attachment-due attachment) due
+                (world-next-due world) (if (world-due-kickers world)
+                                           (min due (world-next-due world))
+                                           due))
           (unless requested-p (push attachment (world-due-kickers world)))))))
   (values))
 

@@ -95,11 +95,13 @@ Check only the position, and do not call the move watchers. Return THING."
 ;; You may put a thing or robot anywhere on the map by hand. A warning, in the same words
 ;; everywhere, says so if the position is most likely a mistake.
 (defun warn-if-in-wall (what world x y)
-  "If (X,Y) is in a wall of WORLD, queue a warning that WHAT, a string, is inside a wall. The first
-such warning about WHAT in a run is also printed if no program reads it."
+  "If (X,Y) is in a wall of WORLD, queue a warning that WHAT, printed as by PRINC, is inside a wall.
+The first such warning about WHAT in a run is also printed if no program reads it."
   (when (wall-at-p (world-map world) x y)
-    (queue-message-items :warning (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
-                         :notable-p (first-warning-for-key-p (list :in-wall what) world))))
+    (let ((what (princ-to-string what)))
+      (queue-message-items :warning
+                           (list (phrase "~A is inside a wall now, at ~,2F, ~,2F" what x y))
+                           :notable-p (first-warning-for-key-p (list :in-wall what) world)))))
 
 (defun check-inside-map (operator map x y)
   "Signal WRONG-ARGUMENT about OPERATOR unless (X,Y) is a point of MAP."
@@ -138,7 +140,7 @@ Return the world of HOLDER."
   (location-world holder))
 
 (defun check-movable (operator thing)
-  (check-argument-type operator "thing" thing 'thing)
+  (unless (thing-p thing) (check-argument-type operator "thing" thing 'thing))
   (unless (thing-world thing)
     (reject-use "~A is a prototype; make things from it with (new-thing ... :prototype)." thing))
   (unless (thing-alive-p thing) (reject-use "~A has been destroyed." thing))
@@ -173,7 +175,7 @@ things, and a container put into itself. Return THING."
 
 (defun put-on-floor-with-warning (thing x y)
   (relocate thing :floor x y)
-  (warn-if-in-wall (princ-to-string thing) (thing-world thing) x y)
+  (warn-if-in-wall thing (thing-world thing) x y)
   thing)
 
 (defun %destroy-thing (thing)

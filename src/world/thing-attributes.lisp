@@ -78,9 +78,9 @@ a declared attribute or of an attribute of some thing."
           (remove-if (lambda (entry) (assoc (first entry) old :test #'eq)) new)))
 
 (defun update-physics-slots (thing)
-  (flet ((number-of (key)
-           (let ((value (get-attribute thing key))) (if (realp value) (double value) 0d0)))
-         (truth-of (key) (and (get-attribute thing key) t)))
+  (labels ((value-of (key) (second (assoc key (thing-attributes thing) :test #'eq)))
+           (number-of (key) (let ((value (value-of key))) (if (realp value) (double value) 0d0)))
+           (truth-of (key) (and (value-of key) t)))
     ;; Nothing can be in the body of a robot.
     (setf (thing-closed-p thing) (and (truth-of :closed) (not (body-p thing)))
           (thing-obsmove-p thing) (or (truth-of :obsmove) (closed-door-p thing))
@@ -90,7 +90,7 @@ a declared attribute or of an attribute of some thing."
           (thing-capacity thing) (if (body-p thing) 0d0 (number-of :capacity))
           (thing-substance-p thing) (truth-of :substance)
           (thing-substance-parameter thing)
-          (substance-value-parameter (get-attribute thing :substance)))))
+          (substance-value-parameter (value-of :substance)))))
 
 ;;; Setting.
 

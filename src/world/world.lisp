@@ -39,6 +39,7 @@ in" :part)
    (kicker-tick 0 tick-count "the number of ticks in which kickers have run")
    (due-kickers '() list "the kickers to run in the next tick by request" :part))
   (:scratch
+   (next-due 0 tick-count "no kicker is due by request before this WORLD-KICKER-TICK")
    (noted-names '() list "the keys of the warnings given so far; see FIRST-WARNING-FOR-KEY-P"
                 :export)
    (writer nil t "the thread that is changing the world, or NIL" :export))
