@@ -64,6 +64,28 @@
         (run:rewind 500)
         (is (not (equal end (state))))))))
 
+(test tileworld.random-walks-of-different-seeds-are-independent
+  "No walk is the rest of another one, as if its dice depended on the sum of seed and tick."
+  (flet ((moves (seed)
+           (run:with-simulation ('ars-testbeds:tiler :seed seed :clean t
+                                                     :parameters '((base:max-speed* 2)
+                                                                   (base:max-turn-angle* 4)
+                                                                   (base:step-duration* 2)
+                                                                   (base:step-by-grid* t)))
+             (let ((robot (first (run:simulation-robots (time:current-simulation)))))
+               (command:robot-set-speed robot 2)
+               (command:robot-set-turn-angle robot 4)
+               (run:run-ticks 1)
+               (ars-testbeds::random-walk)
+               (loop for x = (robot:robot-x robot) for y = (robot:robot-y robot)
+                     repeat 12
+                     do (run:run-ticks 2)
+                     collect (list (round (- (robot:robot-x robot) x))
+                                   (round (- (robot:robot-y robot) y))))))))
+    (let ((moves (moves 6)) (others (moves 8)))
+      (is (notany (lambda (move) (equal '(0 0) move)) moves))
+      (is (not (equal (rest moves) (butlast others)))))))
+
 (test tileworld.no-agent-beats-the-bound
   (dolist (gamma '(16 48))
     (let* ((settings `((dynamism* ,gamma) (planning-time* 0) (holes* 60)))

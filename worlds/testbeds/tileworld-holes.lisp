@@ -27,14 +27,14 @@
 (defun roll-up (low high) (+ low (roll-index (- high low -1) (world-dice *world* :user))))
 (defun roll-time (low high) (* (ticks-per-unit) (roll-up low high)))
 
-(defun cell-for-hole (tick)
-  "Return a random cell (x y) that no hole has at TICK, whether filled or not."
-  (setf *taken* (remove-if (lambda (cell) (<= (third cell) tick)) *taken*))
-  (loop with taken = *taken*
+(defun cell-for-hole (tick end)
+  "Return a random cell (x y) that no hole has at TICK, filled or not. It is taken until END."
+  (loop with taken = (remove-if (lambda (cell) (<= (third cell) tick)) *taken*)
         for x = (roll-up 1 15)
         for y = (roll-up 1 15)
         unless (find-if (lambda (cell) (and (= x (first cell)) (= y (second cell)))) taken)
-          return (list x y)))
+          do (setf *taken* (cons (list x y end) taken))
+             (return (list x y))))
 
 (defun close-hole (hole)
   (setf *holes* (remove hole *holes*))
@@ -44,11 +44,10 @@
 
 (defun open-hole (tick)
   "Open a hole. What opens depends on the seed only, not on what the agent does."
-  (let* ((life (roll-time 240 960)) (score (roll-up 1 10)) (cell (cell-for-hole tick))
+  (let* ((life (roll-time 240 960)) (score (roll-up 1 10)) (end (+ tick life))
+         (cell (cell-for-hole tick end))
          (hole (make-new-thing 'hole (cons *world* (mapcar (lambda (it) (+ it .5)) cell))
-                               `((:size 1) (:score ,score) (:begin ,tick)
-                                 (:end ,(+ tick life))))))
-    (push (append cell (list (+ tick life))) *taken*)
+                               `((:size 1) (:score ,score) (:begin ,tick) (:end ,end)))))
     (push hole *holes*)
     (incf *opened*)
     (incf *possible* score)
@@ -86,11 +85,12 @@
   (steps-between (robot-x tiler) (robot-y tiler) (thing-x hole) (thing-y hole)))
 
 (defun fill-hole-here ()
-  (dolist (hole *holes*)
-    (when (zerop (steps-to hole))
-      (incf *score* (hole-score hole))
-      (incf *filled*)
-      (close-hole hole))))
+  (let ((x (robot-x tiler)) (y (robot-y tiler)))
+    (dolist (hole *holes*)
+      (when (and (< (abs (- (thing-x hole) x)) .5) (< (abs (- (thing-y hole) y)) .5))
+        (incf *score* (hole-score hole))
+        (incf *filled*)
+        (close-hole hole)))))
 
 (defun direction-to (x y)
   "Return the direction of a step from the agent towards the point X, Y."
@@ -149,7 +149,7 @@
       (let ((worth (funcall value hole)))
         (when (or (null best) (> worth most)) (setf best hole most worth))))))
 
-(defun newest () (if *holes* (thing-serial (first *holes*)) 0))
+(defun newest () (let ((hole (first *holes*))) (if hole (thing-serial hole) 0)))
 
 (defun react-p (reaction target seen)
   "True if an agent with REACTION gives up going to TARGET. SEEN is the last hole that it knew of."
@@ -193,7 +193,7 @@
 
 (defun random-walk ()
   "Step in a random direction, again and again."
-  (let ((dice (make-dice (+ (world-seed *world*) (simulation-tick)) "walk"))
+  (let ((dice (make-dice (world-seed *world*) (format nil "walk at ~D" (simulation-tick))))
         (x (robot-x tiler)) (y (robot-y tiler)))
     (take-a-step (loop for (direction dx dy) = (roll-element '((:north 0 -1) (:south 0 1)
                                                                (:east 1 0) (:west -1 0))
