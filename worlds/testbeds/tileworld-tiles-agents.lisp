@@ -189,7 +189,7 @@ directions, and then the tile; NIL if there is none."
 
 (defun random-walk ()
   "Push in a random direction, again and again."
-  (let ((dice (make-dice (+ (world-seed *world*) (simulation-tick)) "walk")))
+  (let ((dice (make-dice (world-seed *world*) (format nil "walk at ~D" (simulation-tick)))))
     (push-to (first (roll-element *directions* dice))
              (lambda (err) (declare (ignore err)) (random-walk)))))
 
