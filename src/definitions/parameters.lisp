@@ -58,6 +58,8 @@
                    (and (third type) (limit-text (third type)))))
           ((typep type '(cons (eql or) (cons (eql null) (cons t null))))
            (format nil "NIL or ~A" (describe-type (third type))))
+          ((typep type '(cons (eql member) cons))
+           (format nil "one of ~{~(~S~)~^, ~}" (rest type)))
           (t (format nil "a value of type ~(~S~)" type)))))
 
 ;; As numbers have two limits each, so do the types: (real 0 1).

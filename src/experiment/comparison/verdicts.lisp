@@ -252,8 +252,10 @@ Tests over all conditions are corrected separately. Each interval is for one dif
                (list "Over all, each seed counts once, with its mean over the conditions."
                      "Tests over all conditions are corrected separately from other tests."))
           (comparison-notes comparison)
-          (loop for contrast in (comparison-contrasts comparison)
-                append (left-out-notes contrast))))
+          ;; One side can be the same in all contrasts.
+          (remove-duplicates (loop for contrast in (comparison-contrasts comparison)
+                                   append (left-out-notes contrast))
+                             :test #'string= :from-end t)))
 
 ;;;; PRINT-COMPARISON
 

@@ -155,7 +155,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
   (let ((errors (loop for sample in (results-samples results)
                       append (remove "" (coerce (sample-errors sample) 'list) :test #'string=))))
     (when errors
-      (format stream "~&~D trial~:P had errors, the first: ~A. PRINT-RESULTS lists all.~%"
+      (format stream "~&~D trial~:P had errors, the first: ~A.~%"
               (length errors) (string-right-trim "." (cut (first errors) 300))))))
 
 (defun run-and-read-results (experiment directory trials until shard workers time-limit stream)

@@ -175,8 +175,7 @@ in the worker numbered WORKER."
 (defun check-row (experiment condition texts file number)
   "TEXTS are line NUMBER of FILE. Signal DAMAGED-TABLE unless they can be a row of CONDITION of
 EXPERIMENT, or of a former condition if CONDITION is NIL."
-  (let* ((seed (seed-column (columns experiment)))
-         (trial (parse-integer (nth (1+ seed) texts))))
+  (let ((seed (seed-column (columns experiment))))
     (unless (string= (first texts) (string-downcase (experiment-name experiment)))
       (reject-table file number "this is a row of another experiment, ~A. Give another directory."
                     (first texts)))
@@ -184,10 +183,17 @@ EXPERIMENT, or of a former condition if CONDITION is NIL."
               (and (null condition)
                    (find (second texts) (experiment-conditions experiment)
                          :key #'condition-fingerprint :test #'equal)))
-      (reject-row file number "The condition, factors and fingerprint of this row do not agree."))
-    (unless (= (trial-seed experiment trial) (parse-integer (nth seed texts)))
-      (reject-row file number "Trial ~D has the seed ~D, not ~A." trial
-                  (trial-seed experiment trial) (nth seed texts)))))
+      (reject-row file number "The condition, factors and fingerprint of this row do not agree."))))
+
+(defun check-seed-of-row (experiment texts file number)
+  "TEXTS are line NUMBER of FILE. Signal DAMAGED-TABLE if EXPERIMENT has other seeds."
+  (destructuring-bind (seed trial &rest others) (nthcdr (seed-column (columns experiment)) texts)
+    (declare (ignore others))
+    (let ((expected (trial-seed experiment (parse-integer trial))))
+      (unless (= expected (parse-integer seed))
+        (reject-table file number "this row is of other seeds: its trial ~A has the seed ~A, and ~
+                                   that of this run has ~D. Give another directory for these seeds."
+                      trial seed expected)))))
 
 (defun present-rows (experiment directory foreign &optional (sample (constantly nil)))
   "Return two values: a table of the rows of EXPERIMENT in DIRECTORY whose series are complete, and
@@ -200,6 +206,7 @@ DAMAGED-TABLE."
     (when (remove-incomplete-line file (columns experiment))
       (do-rows (texts file start number)
         (let ((condition (condition-of-texts experiment texts)))
+          (check-seed-of-row experiment texts file number)
           (when (and condition (string/= (second texts) (condition-fingerprint condition)))
             (funcall foreign condition texts))
           (check-row experiment condition texts file number)
