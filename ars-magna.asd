@@ -175,7 +175,8 @@
    (:module "src/experiment/replay" :serial t
     :components ((:file "replaying") (:file "failures")))
    (:module "src/experiment/testbed" :serial t
-    :components ((:file "testbed") (:file "running") (:file "claims") (:file "page")))
+    :components ((:file "relations") (:file "testbed") (:file "running") (:file "games")
+                 (:file "claims") (:file "page")))
    (:module "src" :components ((:file "all"))))
   ;; The packages are locked once they are loaded.
   :perform (prepare-op (operation system)
@@ -431,7 +432,7 @@
                  (:file "experiments-series") (:file "experiments-series-tables")
                  (:file "thinking-experiments") (:file "tileworld-bare") (:file "testbeds")
                  (:file "pursuit-bare") (:file "testbeds-pursuit")
-                 (:file "testbeds-tiles") (:file "testbeds-agents")
+                 (:file "testbeds-tiles") (:file "testbeds-agents") (:file "testbeds-shell")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

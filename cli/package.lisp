@@ -65,6 +65,7 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:missing-shards #:check-same-code
                 #:testbed #:find-testbed #:all-testbeds #:testbed-name #:testbed-agents
                 #:testbed-knobs #:testbed-score #:run-testbed #:save-testbed-pages
-                #:write-testbed-list #:agent-p)
+                #:write-testbed-list #:agent-p #:write-agents-order #:count-broken-trials
+                #:first-broken-trial #:testbed-robots #:parameter-of-variable)
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string #:stream-read-char))

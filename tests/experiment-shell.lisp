@@ -96,7 +96,8 @@ output, and what to the error output."
 (test options-of-commands.are-all-in-their-usage
   (loop for (command options) in `(("experiment" ,cli::*experiment-options*)
                                    ("merge" ,cli::*merge-options*)
-                                   ("compare" ,cli::*compare-options*))
+                                   ("compare" ,cli::*compare-options*)
+                                   ("testbed" ,cli::*testbed-options*))
         for usage = (with-output-to-string (*standard-output*)
                       (is (eql 0 (cli::run-with-arguments (list command "--help")))))
         do (is (eql 0 (search (format nil "Usage: ars-magna ~A" command) usage)))

@@ -114,14 +114,12 @@
     (and boldness
          (list (second boldness) (and dash (intern (subseq name (1+ dash)) :keyword))))))
 
-(defun bare-scores (agents settings games)
-  (flet ((knob (name) (second (assoc name settings :test #'string=))))
-    (loop for agent in agents
-          collect (cons agent (loop for holes in games
-                                    collect (apply #'bare-effectiveness holes
-                                                   (or (knob 'dynamism*) 32)
-                                                   (or (knob 'planning-time*) 1)
-                                                   (boldness-and-reaction agent)))))))
+(defun bare-scores (game games)
+  "Return the scores of GAME, (agent setting...), for GAMES, lists of holes."
+  (flet ((knob (name) (second (find name (rest game) :key #'first :test #'string= :from-end t))))
+    (loop for holes in games
+          collect (apply #'bare-effectiveness holes (or (knob 'dynamism*) 32)
+                         (or (knob 'planning-time*) 1) (boldness-and-reaction (first game))))))
 
 (test tileworld.claims-hold-by-the-bare-program
   (let ((games (loop for seed from 1 to 60 collect (tileworld-holes seed '()))))
@@ -131,14 +129,10 @@
                (loop for relation in relations
                      for (kind a b) = relation
                      when (and (boldness-and-reaction a) (boldness-and-reaction b))
-                       do (flet ((scores (more)
-                                   (bare-scores (list a b) (append settings more) games)))
-                            (let ((row (if (eq kind :narrows)
-                                           (ars-magna.experiment::narrowing-row relation #'scores)
-                                           (ars-magna.experiment::simple-row relation
-                                                                             (scores '())))))
-                              (is (getf row :holds) "~A ~S: ~S ~S" text settings relation
-                                  row))))))))
+                       do (let ((row (ars-magna.experiment::relation-row
+                                      relation settings
+                                      (lambda (game) (bare-scores game games)) nil)))
+                            (is (getf row :holds) "~A ~S: ~S ~S" text settings relation row)))))))
 
 ;;; The face.
 
@@ -153,7 +147,7 @@
   (signals base:unknown-name (experiment:run-testbed 'tileworld :agents '(boldest)))
   (signals base:wrong-argument (experiment:run-testbed 'tileworld :agents 'bold))
   (signals base:unknown-name (experiment:run-testbed 'tileworld :knobs '((base:max-speed* 1))))
-  (signals base:malformed-definition
+  (signals base:wrong-argument
     (experiment:run-testbed 'tileworld :agents '(bold)
                                        :knobs '((directions* 5)))))
 
@@ -178,8 +172,7 @@
     (let ((testbed (experiment:find-testbed 'tileworld)))
       (flet ((page (workers)
                (with-output-to-string (out)
-                 (with-directories (directory)
-                   (ars-magna.experiment::write-testbed-page
+                 (ars-magna.experiment::write-testbed-page
                     (ars-magna.experiment::make-testbed
                      :name 'tileworld :documentation "d" :rules '("r") :knobs '()
                      :agents '((ars-testbeds::bold "b") (ars-testbeds::naive "n"))
@@ -190,7 +183,7 @@
                      :title "t"
                      :deciding (ars-magna.experiment::testbed-deciding testbed)
                      :options (ars-magna.experiment::testbed-options testbed))
-                    out directory 3 workers)))))
+                    out 3 workers))))
         (let ((page (page 1)))
           (is (search "| bold | " page))
           (is (string= page (page 2))))))))

@@ -5,14 +5,35 @@
 (defun parse-setting (text)
   "Return a list (name value), strings, for TEXT, which has the form NAME=VALUE."
   (let ((equals (position #\= text)))
-    (unless equals (reject-usage "--knob takes NAME=VALUE, such as dynamism=64, not ~A." text))
+    (unless (and equals (< 0 equals (1- (length text))))
+      (reject-usage "--knob takes NAME=VALUE, such as dynamism=64, not ~A." text))
     (list (subseq text 0 equals) (subseq text (1+ equals)))))
 
 (defparameter *testbed-options*
   '(("--agent" :agent identity) ("--load" :load identity) ("--seeds" :seeds parse-count)
     ("--knob" :knob parse-setting) ("--tuning" :tuning nil) ("--out" :out parse-path)
-    ("--workers" :workers parse-count) ("--all" :all nil) ("--quiet" :quiet nil))
+    ("--workers" :workers parse-count) ("--time-limit" :time-limit parse-seconds)
+    ("--all" :all nil) ("--quiet" :quiet nil))
   "The options of the command `testbed`, in the format of *OPTIONS*.")
+
+(defun testbed-option (key)
+  (first (find key *testbed-options* :key #'second)))
+
+(defun check-testbed-options (options words)
+  "Signal USAGE-ERROR if one of OPTIONS would have no effect. WORDS are names of testbeds."
+  (let ((given (remove :other (remove-duplicates (mapcar #'first options)))))
+    (flet ((reject-if-given (keys control)
+             (let ((key (find-if (lambda (key) (member key keys)) given)))
+               (when key (reject-usage control (testbed-option key))))))
+      (when (rest words)
+        (reject-usage "testbed takes the name of one testbed, not ~{~A~^ and ~}." words))
+      (cond ((member :all given)
+             (reject-if-given '(:agent :knob :tuning :time-limit)
+                              "--all runs all agents for a page of results; leave out ~A.")
+             (unless (member :out given) (reject-usage "--all needs --out DIR.")))
+            ((null words)
+             (reject-if-given (remove :load given)
+                              "~A needs the name of a testbed, as in testbed tileworld."))))))
 
 (defun testbed-named (name)
   (or (find-testbed name nil)
@@ -62,29 +83,90 @@ are no agents of other testbeds."
       (unless symbol
         (reject-line "~(~A~) has no knob ~A. Known: ~{~(~A~)~^, ~}." (testbed-name testbed) name
                      (testbed-knobs testbed)))
-      (list symbol (handler-case (read-data-from-string text 0)
-                     (error () (reject-line "~A of ~A is no value." text name)))))))
+      (list symbol (knob-value symbol (parameter-of-variable symbol) text)))))
+
+(defun knob-value (knob parameter text)
+  "Return the value of KNOB that TEXT is, which PARAMETER, unless NIL, must be able to have."
+  (flet ((reject ()
+           (reject-line "~(~A~) cannot be ~A.~@[ Give ~A.~]" knob text
+                        (and parameter (describe-type (parameter-type parameter))))))
+    (let ((value (handler-case (read-data-from-string text 0) (error () (reject)))))
+      (when parameter
+        (handler-case (check-parameter-value parameter value) (wrong-argument () (reject))))
+      value)))
+
+(defun knob-settings (testbed options)
+  "Return the settings of OPTIONS, lists (symbol value)."
+  (let ((settings (loop for setting in (option-values :knob options)
+                        collect (knob-setting setting testbed))))
+    (loop for ((knob) . others) on settings
+          do (when (assoc knob others)
+               (reject-usage "--knob ~(~A~) was given twice. Give it once." knob)))
+    settings))
+
+;;; Running agents.
+
+(defun progress-stream (options)
+  (and (not (option-value :quiet options)) *error-output*))
+
+(defun default-out (testbed options)
+  (format nil "out/~(~A~)~:[~;-tuning~]/" (testbed-name testbed) (option-value :tuning options)))
+
+(defun prompt-command-line (options)
+  "Return the shell's line that starts the prompt with the files of --load in OPTIONS."
+  (uiop:escape-sh-command
+   (append (program-command-line)
+           (loop for file in (option-values :load options) append (list "--load" file)))))
+
+(defun write-replay-advice (testbed agents knobs results options)
+  "Say how to see the first error in RESULTS of AGENTS again."
+  (multiple-value-bind (place trial) (first-broken-trial results)
+    (let ((*print-case* :downcase) (*print-pretty* nil) (*package* (find-package :keyword))
+          (name (testbed-name testbed)))
+      (format t "~%To see the first of these again, in the debugger, start the prompt and type the ~
+                 other lines:~%~{  ~A~%~}"
+              (list (prompt-command-line options)
+                    (format nil "(run-testbed '~S :seeds 1 :agents '(~S)~@[ :knobs '~S~]~:[~; ~
+                                 :tuning t~])"
+                            name (nth place agents) knobs (option-value :tuning options))
+                    "(setf *break-on-user-error* t)"
+                    (format nil "(replay-trial '~S 1 ~D)" name trial))))))
+
+(defun report-comparison (testbed results agents)
+  "Print what RESULTS say of several AGENTS in TESTBED: their order, and how they differ."
+  (when (rest agents)
+    (terpri)
+    (write-agents-order testbed results agents *standard-output*)
+    (terpri)
+    (compare-levels results "agent" :against (string-downcase (first agents))
+                                    :measure (testbed-score testbed))))
 
 (defun run-agents (testbed agents options)
-  "Run AGENTS in TESTBED by OPTIONS. Print their scores and, of several, the differences."
-  (let* ((knobs (loop for setting in (option-values :knob options)
-                      collect (knob-setting setting testbed)))
-         (out (option-value :out options
-                            (format nil "out/~(~A~)~:[~;-tuning~]/" (testbed-name testbed)
-                                    (option-value :tuning options))))
+  "Run AGENTS in TESTBED by OPTIONS. Print their scores and, of several, the differences. Return the
+exit status."
+  (let* ((knobs (knob-settings testbed options))
+         (out (option-value :out options (default-out testbed options)))
          (results (run-testbed (testbed-name testbed)
                                :agents agents :knobs knobs
                                :seeds (option-value :seeds options 100)
                                :tuning (option-value :tuning options)
                                :workers (option-value :workers options (processors))
+                               :time-limit (option-value :time-limit options)
                                :directory (progn (ensure-results-directory out) out)
-                               :stream (and (not (option-value :quiet options)) *error-output*))))
+                               :stream (progress-stream options)))
+         (broken (count-broken-trials results)))
     (report-results results nil)
-    (when (rest agents)
-      (terpri)
-      (compare-levels results "agent" :against (string-downcase (first agents))
-                                      :measure (testbed-score testbed)))
-    (format t "~%The table is in ~A; compare it with: ars-magna compare --by agent ~:*~A~%" out)))
+    (cond ((plusp broken)
+           (write-replay-advice testbed agents knobs results options)
+           (print-notice "~D game~:P ended with an error or at the time limit, so agents are not ~
+                          compared."
+                         broken)
+           1)
+          (t (report-comparison testbed results agents)
+             (format t "~%The table is in ~A; compare it with: ars-magna compare --by agent ~
+                        ~:*~A~%"
+                     out)
+             0))))
 
 (defun agents-from-options (testbed options)
   "Return the agents to run: those of the options; after --load, also those of TESTBED."
@@ -95,28 +177,36 @@ are no agents of other testbeds."
                                  (mapcar #'first (testbed-agents testbed))))
                        :from-end t)))
 
-(defun run-one-testbed (name options)
-  (let ((testbed (testbed-named name)))
-    (if (intersection '(:agent :seeds :knob :tuning :out) (mapcar #'first options))
-        (run-agents testbed (agents-from-options testbed options) options)
-        (testbed (testbed-name testbed)))))
+(defun run-one-testbed (testbed options)
+  (cond ((set-difference (mapcar #'first options) '(:load :other))
+         (run-agents testbed (agents-from-options testbed options) options))
+        (t (testbed (testbed-name testbed))
+           0)))
 
-(defun save-all-pages (options)
-  (let ((out (or (option-value :out options) (reject-usage "--all needs --out DIR."))))
+(defun save-pages (testbeds options)
+  "Write the pages of TESTBEDS into the directory of OPTIONS. Print their files as they are done."
+  (let ((out (option-value :out options)))
     (ensure-results-directory out)
-    (dolist (file (save-testbed-pages out :seeds (option-value :seeds options 100)
-                                          :workers (option-value :workers options (processors))))
-      (format t "~A~%" (native-name file)))))
+    (dolist (testbed testbeds)
+      (dolist (file (save-testbed-pages out :names (list (testbed-name testbed))
+                                            :seeds (option-value :seeds options 100)
+                                            :workers (option-value :workers options (processors))
+                                            :stream (progress-stream options)))
+        (format t "~A~%" (native-name file))
+        (finish-output)))
+    0))
 
 (defun testbed-command (arguments)
   (let* ((options (parse-options arguments :table *testbed-options* :others t))
          (words (option-values :other options)))
+    (check-testbed-options options words)
     (load-files-before-prompt (option-values :load options))
-    (when (rest words) (reject-usage "testbed takes the name of one testbed."))
     (call-reporting-interruption
      (lambda ()
-       (cond ((option-value :all options) (save-all-pages options))
-             (words (run-one-testbed (first words) options))
-             (t (write-testbed-list *standard-output*)))
-       0)
+       (let ((testbed (and words (testbed-named (first words)))))
+         (cond ((option-value :all options)
+                (save-pages (if testbed (list testbed) (all-testbeds)) options))
+               (testbed (run-one-testbed testbed options))
+               (t (write-testbed-list *standard-output*)
+                  0))))
      "testbed" arguments options)))

@@ -3,6 +3,13 @@
 (in-package :ars-testbeds)
 (in-readtable :nisp)
 
+;;; Both agents would wait forever for the end of a game that has not begun.
+
+(defun check-game-begun ()
+  "Signal an error if no hole has opened."
+  (when (zerop *opened*)
+    (error "No game has begun. Start one: (play-holes 'AGENT), as (run-testbed 'tileworld) does.")))
+
 ;;; Looking ahead. The agent tries each hole in a fork of the run in which no more holes open. It
 ;;; goes there, then on as BOLD-NEARER. Scores are read several times, so earlier ones count more.
 
@@ -33,7 +40,8 @@
                          (plan-move (lambda ()
                                       (go-committed target nil reaction seen #'rest-a-moment)))
                          (spend-steps 1 #'rest-a-moment)))
-                   (run-ticks 1))))))
+                   (run-ticks 1))
+               (when (< 50 (simulation-tick)) (check-game-begun))))))
 
 ;;; An upper bound: the agent that knows all holes in advance, plans without cost, and takes the
 ;;; best of all tours. A hole is a list (x y score begin end), a stop a list (tick score hole before
@@ -45,6 +53,7 @@
     (loop with last = 0
           until (game-over-p)
           do (run-ticks 50)
+             (check-game-begun)
           append (loop for hole in (reverse *holes*)
                        when (< last (thing-serial hole))
                          collect (list (floor (thing-x hole)) (floor (thing-y hole))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(trial-seed))
+(export '(trial-seed parameter-of-variable))
 
 (addition experiment-p)
 
@@ -55,6 +55,7 @@ variables hold weakly: the keys of a table" :writable))
 ;;; Parameters.
 
 (defun parameter-of-variable (name)
+  "Return the parameter that is the variable NAME, a symbol, or NIL."
   (let ((parameter (find-parameter name nil)))
     (and parameter (eq name (parameter-symbol parameter)) parameter)))
 

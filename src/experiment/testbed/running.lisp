@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(write-testbed-list))
+(export '(write-testbed-list write-agents-order count-broken-trials
+          first-broken-trial))
 
 (addition start-agent)
 (defun start-agent (agent)
@@ -21,23 +22,33 @@ Return nothing. Signals UNKNOWN-NAME."
           ((and name (symbolp name) (find name names :test #'same-name-p)))
           (t (reject-name "agent" name names)))))
 
-(defun resolve-knob (operator testbed setting)
+(defun resolve-knob (testbed setting)
   "Return SETTING, a list (knob value), with the symbol of a knob of TESTBED."
-  (unless (typep setting 'named-form)
-    (reject-argument operator 'knobs setting "lists (knob value)"))
-  (list (or (find (first setting) (testbed-knobs testbed) :test #'same-name-p)
-            (reject-name "knob" (first setting) (testbed-knobs testbed)))
-        (second setting)))
+  (unless (setting-p setting)
+    (reject-argument 'run-testbed 'knobs setting "lists (knob value)"))
+  (let ((knob (or (find (first setting) (testbed-knobs testbed) :test #'same-name-p)
+                  (reject-name "knob" (first setting) (testbed-knobs testbed)))))
+    ;; A later testbed may have defined a parameter of the same name.
+    (let ((parameter (parameter-of-variable knob)))
+      (when parameter (check-parameter-value parameter (second setting))))
+    (list knob (second setting))))
+
+(defun resolve-knobs (testbed settings)
+  (let ((resolved (loop for setting in settings collect (resolve-knob testbed setting))))
+    (loop for ((knob) . others) on resolved
+          do (when (assoc knob others)
+               (reject-use "The knob ~(~A~) is set twice. Set it once." knob)))
+    resolved))
 
 (addition run-testbed)
-(defun run-testbed (name &key agents knobs (seeds 100) tuning (workers 1) directory
+(defun run-testbed (name &key agents knobs (seeds 100) tuning (workers 1) directory time-limit
                               (stream *error-output*))
   "Run AGENTS in the testbed NAME, all on the same SEEDS, a number. Return results, as
 RUN-EXPERIMENT does: AGENT is a factor, and the score is the first measure. AGENTS are names of
 plans or functions, or of agents of the testbed; by default all of these. KNOBS are lists (knob
 value). If TUNING is true, the seeds are those to write agents with, else those to test them.
-WORKERS, DIRECTORY and STREAM are as for RUN-EXPERIMENT. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and
-the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
+WORKERS, DIRECTORY, TIME-LIMIT and STREAM are as for RUN-EXPERIMENT. Signals UNKNOWN-NAME,
+WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
   (let ((testbed (find-testbed name)))
     (unless (and (proper-list-p agents) (proper-list-p knobs))
       (reject-argument 'run-testbed 'agents (list agents knobs) "lists of agents and of knobs"))
@@ -45,14 +56,64 @@ the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
      (testbed-experiment testbed
                          (loop for agent in (or agents (mapcar #'first (testbed-agents testbed)))
                                collect (resolve-agent testbed agent))
-                         :settings (loop for setting in knobs
-                                         collect (resolve-knob 'run-testbed testbed setting))
+                         :settings (resolve-knobs testbed knobs)
                          :tuning tuning)
-     seeds workers directory stream)))
+     seeds workers directory stream time-limit)))
 
-(defun run-experiment-object (experiment seeds workers directory stream)
-  (run-experiment (experiment-name experiment) :trials seeds :workers workers
-                  :directory directory :stream stream))
+(defun run-experiment-object (experiment seeds workers directory stream &optional time-limit)
+  (apply #'run-experiment (experiment-name experiment)
+         :trials seeds :workers workers :directory directory :stream stream
+         (and time-limit (list :time-limit time-limit))))
+
+(defun broken-trials (sample)
+  "Return the numbers of the trials of SAMPLE that had an error or took too long."
+  (loop for trial across (sample-trials sample)
+        for error across (sample-errors sample)
+        for outcome across (sample-outcomes sample)
+        when (or (string/= "" error) (string= "timeout" outcome)) collect trial))
+
+(defun count-broken-trials (results)
+  "Return how many trials of RESULTS had an error or took too long."
+  (loop for sample in (results-samples results) sum (length (broken-trials sample))))
+
+(defun first-broken-trial (results)
+  "Return the place of the first sample of RESULTS with a broken trial, and the trial's number."
+  (let ((place (position-if #'broken-trials (results-samples results))))
+    (values place (first (broken-trials (nth place (results-samples results)))))))
+
+(defun nearest-mean (numbers)
+  (float (/ (reduce #'+ numbers :key #'rational) (length numbers)) 1d0))
+
+(defun score-number (value measure)
+  "Return VALUE, of MEASURE, as a number: 1 and 0 for true and false."
+  (cond ((realp value) value)
+        ((member value '(t nil)) (if value 1 0))
+        (t (reject-use "The measure ~(~A~) has the value ~A, which is no number." measure value))))
+
+(defun mean-score (testbed results sample)
+  "Return the mean of the score of TESTBED in SAMPLE of RESULTS."
+  (let ((score (testbed-score testbed)))
+    (nearest-mean (map 'list (lambda (value) (score-number value score))
+                       (sample-measure results sample score)))))
+
+(defun best-first (testbed scored)
+  "Return SCORED, a list of conses (agent . mean score), in order by the direction of TESTBED."
+  (stable-sort (copy-list scored) (if (testbed-less-is-better testbed) #'< #'>) :key #'cdr))
+
+(defun write-agents-order (testbed results agents stream)
+  "Write AGENTS, which have RESULTS in TESTBED, to STREAM, the best first."
+  (let ((scored (loop for agent in agents
+                      for sample in (results-samples results)
+                      collect (cons agent (mean-score testbed results sample)))))
+    (write-wrapped (format nil "Best first, by ~A: ~:{~(~A~) ~A~:^, ~}." (score-text testbed)
+                           (loop for (agent . mean) in (best-first testbed scored)
+                                 collect (list agent (decimal-text mean 3))))
+                   stream)))
+
+(defun score-text (testbed)
+  "Return the name of the score of TESTBED, with the direction."
+  (format nil "~(~A~)~:[~;, less is better~]" (testbed-score testbed)
+          (testbed-less-is-better testbed)))
 
 ;;; Telling.
 
@@ -79,7 +140,7 @@ the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
                  stream)
   (write-testbed-section "Rules" (testbed-rules testbed) stream)
   (write-testbed-section "Knobs" (mapcar #'knob-line (testbed-knobs testbed)) stream)
-  (write-testbed-section (format nil "Agents, by the score ~(~A~)" (testbed-score testbed))
+  (write-testbed-section (format nil "Agents, by the score ~A" (score-text testbed))
                          (loop for (name text) in (testbed-agents testbed)
                                collect (format nil "~(~A~): ~A" name text))
                          stream)

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(testbed-experiment agent-p))
+(export '(testbed-experiment testbed-robots agent-p))
 
 ;;; The manual measures itself against the testbeds of its time (1.2, 1.3). A testbed is an
 ;;; experiment whose factor AGENT has the agents as values. So its trials, tables, comparisons and
@@ -19,9 +19,10 @@
   (knobs '() list "the parameters that are knobs of the testbed, symbols" :addition)
   (agents '() list "the agents, lists (name text)" :addition)
   (score nil symbol "the name of the measure that is the score" :addition)
+  (less-is-better nil boolean "true if agents are the better, the less they score" :addition)
   (seeds '() list "the seeds, a list (:tuning N :testing N): trial T has the seed N + T" :addition)
   (sweeps '() list "lists ((knob value...) (knob value)...): what the page of results varies")
-  (claims '() list "lists (text settings relation...): see CHECK-CLAIMS")
+  (claims '() list "lists (text settings relation...): see DEFINE-TESTBED")
   (package *package* package)
   (title "" string "what error messages call the definition")
   (form '() list "the form of the definition")
@@ -43,7 +44,8 @@
     (:sources "(:sources string...)")
     (:knobs "(:knobs parameter...), parameters that DEFINE-KNOB or the simulator has defined")
     (:agents "(:agents (name string)...), names of plans or functions")
-    (:score "(:score measure), the name of a measure that DEFMEASURE defines")
+    (:score "(:score measure), the name of a measure that DEFMEASURE defines, or (:score measure
+:less) if less is better")
     (:seeds "(:seeds :tuning n :testing n), integers")
     (:sweeps "(:sweeps ((knob value...) (knob value)...)...)")
     (:claims "(:claims (string (((knob value)...)...) relation...)...)"))
@@ -57,24 +59,42 @@
         ((:rules :sources) (all 'string))
         (:knobs (all '(and symbol (not null))))
         (:agents (all '(cons (and symbol (not null)) (cons string null))))
-        (:score (and (all '(and symbol (not null))) (null (rest parts))))
+        (:score (typep parts '(cons (and symbol (not null))
+                               (or null (cons (eql :less) null)))))
         (:seeds (typep parts '(cons (eql :tuning)
                                (cons integer (cons (eql :testing) (cons integer null))))))
-        (:sweeps (all '(cons cons)))
-        (:claims (every #'claim-valid-p parts))))))
+        (:sweeps (every #'sweep-p parts))
+        (:claims (every #'claim-frame-p parts))))))
 
-(defun claim-valid-p (claim)
-  (and (proper-list-p claim)
-       (typep claim '(cons string (cons cons cons)))
-       (every (lambda (settings) (every (lambda (part) (typep part 'named-form)) settings))
-              (second claim))
-       (every #'relation-valid-p (cddr claim))))
+(defun sweep-p (thing)
+  "True if THING is a list ((knob value...) (knob value)...)."
+  (and (proper-list-p thing)
+       (typep thing '(cons (cons symbol cons)))
+       (proper-list-p (first thing))
+       (settings-p (rest thing))))
 
-(defun relation-valid-p (relation)
-  "True if RELATION is one of those that CHECK-CLAIMS lists."
-  (typep relation '(or (cons (member :better :within :not-worse)
-                            (cons symbol (cons symbol (cons real null))))
-                    (cons (eql :narrows) (cons symbol (cons symbol (cons cons null)))))))
+(defun check-claim-parts (definition claims agents)
+  "Signal MALFORMED-DEFINITION unless all parts of CLAIMS are relations between AGENTS."
+  (dolist (claim claims)
+    (dolist (part (cddr claim))
+      (unless (relation-p part agents)
+        (reject-clause definition part *relation-syntax*)))))
+
+(defun check-knobs-known (definition clauses)
+  "Signal MALFORMED-DEFINITION if claims or sweeps of CLAUSES name what is no knob."
+  (let ((knobs (testbed-clause :knobs clauses)))
+    (flet ((check (name form)
+             (unless (member name knobs)
+               (reject-clause definition form
+                              (format nil "knobs of the clause :knobs, ~{~(~A~)~^, ~}; not ~(~A~)"
+                                      knobs name)))))
+      (dolist (sweep (testbed-clause :sweeps clauses))
+        (dolist (part sweep) (check (first part) sweep)))
+      (dolist (claim (testbed-clause :claims clauses))
+        (dolist (settings (second claim))
+          (dolist (setting settings) (check (first setting) settings)))
+        (dolist (part (cddr claim))
+          (dolist (name (knobs-in-relation part)) (check name part)))))))
 
 (defun testbed-clause (key clauses)
   (rest (find key clauses :key #'first)))
@@ -86,7 +106,10 @@
         (reject-clause definition clause (second syntax)))))
   (loop for key in '(:rules :agents :score :seeds)
         do (unless (testbed-clause key clauses)
-             (reject-clause definition (list key) (second (assoc key *testbed-clauses*))))))
+             (reject-clause definition (list key) (second (assoc key *testbed-clauses*)))))
+  (check-claim-parts definition (testbed-clause :claims clauses)
+                     (mapcar #'first (testbed-clause :agents clauses)))
+  (check-knobs-known definition clauses))
 
 (defun own-testbed-clause-p (clause)
   (and (consp clause) (assoc (first clause) *testbed-clauses*)))
@@ -111,12 +134,21 @@ CLAUSES are those of DEFEXPERIMENT, except :vary and :seed, and these:
   (:knobs parameter...)    what can be varied: parameters, see DEFINE-KNOB
   (:agents (name string)...)  agents, each with a sentence. A name is that of a plan or function;
                            in the clause :run it is the value of the variable AGENT, see START-AGENT
-  (:score measure)         the measure by which agents are compared
+  (:score measure)         the measure by which agents are compared; (:score measure :less) if
+                           less is better
   (:seeds :tuning n :testing n)  trial T has the seed N + T: one N to write agents with, another to
                            test them
   (:sweeps ((knob value...) (knob value)...)...)  what the page of results varies, all else given
-  (:claims (string (((knob value)...)...) relation...)...)  what is said of the agents: see
-                           CHECK-CLAIMS
+  (:claims (string (((knob value)...)...) relation...)...)  what is said of the agents; it holds
+                           if each relation holds under each of the lists of settings
+A relation compares A and B, each an agent, or a list (agent (knob value)...) with settings of its
+own. So one agent can be compared under two settings.
+  (:better a b margin)        A scores at least MARGIN more than B, or less, if less is better
+  (:within a b margin)        the scores of A and B differ by at most MARGIN
+  (:not-worse a b margin)     A is not worse than B by MARGIN: the interval leaves that out
+  (:narrows a b (knob v w))   the score of A less that of B is better when KNOB is V than when W
+  (:measure name)             the claim is about this measure, not the score; (:measure name :less)
+                              if less is better
 Signals MALFORMED-DEFINITION."
   (let ((definition (definition-title "define-testbed" name)))
     (expand-definition
@@ -144,6 +176,7 @@ Signals MALFORMED-DEFINITION."
                (make-testbed
                 :name ',name :documentation ,documentation :title ,definition
                 :score ',(first (testbed-clause :score clauses))
+                :less-is-better ,(and (rest (testbed-clause :score clauses)) t)
                 ,@(loop for key in '(:rules :sources :knobs :agents :seeds :sweeps :claims)
                         collect key
                         collect `',(testbed-clause key clauses))
@@ -192,19 +225,40 @@ run. Return NAME. Signals MALFORMED-DEFINITION."
   "Return the seed before the first of TESTBED, for tuning if TUNING is true, else for testing."
   (or (getf (testbed-seeds testbed) (if tuning :tuning :testing)) 0))
 
-(defun testbed-experiment (testbed agents &key settings sweep tuning)
-  "Return an experiment on AGENTS in TESTBED. SETTINGS are lists (knob value). SWEEP, a list (knob
-value...), varies a knob. Use the seeds for tuning if TUNING is true, else those for testing."
-  (let* ((options (let ((*package* (testbed-package testbed))) (funcall (testbed-options testbed))))
+(defun experiment-options (testbed)
+  "Return the options of EXPERIMENT-FROM-OPTIONS that the definition of TESTBED gives, a plist."
+  (let ((*package* (testbed-package testbed))) (funcall (testbed-options testbed))))
+
+(defun testbed-parameters (testbed)
+  "Return what TESTBED sets for all its games, lists (name value)."
+  (loop for (part value) in (getf (experiment-options testbed) :parameters)
+        collect (list (first part) value)))
+
+(defun testbed-robots (testbed)
+  "Return the names of the robots in games of TESTBED."
+  (mapcar #'kind-in-entry (getf (experiment-options testbed) :robots)))
+
+(defun factor-parts (settings)
+  (loop for (name . values) in settings collect (list* (list name) values)))
+
+(defun testbed-experiment (testbed agents &key settings games tuning)
+  "Return an experiment on AGENTS in TESTBED. SETTINGS are lists (knob value). Or without AGENTS, an
+experiment on GAMES, lists (agent setting...). Use the seeds for tuning if TUNING is true, else
+those for testing."
+  (let* ((options (experiment-options testbed))
          (seed (first-seed testbed tuning))
          (variable (first (getf options :variables)))
          (experiment
            (apply #'experiment-from-options (testbed-name testbed) (testbed-title testbed)
                   ;; Settings are factors of one value each, so that a table records them.
-                  :factors (list* (list (list variable) agents)
-                                  (loop for (name . values) in (append settings
-                                                                       (and sweep (list sweep)))
-                                        collect (list (list name) values)))
+                  :factors (and agents
+                                (list* (list (list variable) agents)
+                                       (loop for (name value) in settings
+                                             collect (list (list name) (list value)))))
+                  :cases (loop for game in games
+                               collect (list (game-text game)
+                                             (factor-parts `((,variable ,(first game))
+                                                             ,@(rest game)))))
                   :seed seed
                   :form (testbed-form testbed)
                   :deciding (reseeded-clauses (testbed-deciding testbed) seed)
