@@ -146,7 +146,21 @@ world. Signals BAD-LINE if there is no such world."
 (defun robot-names-in-same-world (robot-name)
   (cons robot-name (remove robot-name (robot-names-in-map (map-of-robot robot-name)))))
 
-(defun write-worlds ()
-  (dolist (map (maps-with-robots))
+(defun testbed-maps ()
+  "Return the maps on which games of testbeds are played."
+  (loop for testbed in (all-testbeds)
+        append (loop for robot in (testbed-robots testbed)
+                     when (find-blueprint robot nil) collect (map-of-robot robot))))
+
+(defun write-maps (maps)
+  (dolist (map maps)
     (format t "~(~16A~) ~3D x ~3D   ~{~A~^, ~}~%" (map-name map) (map-width map) (map-height map)
             (robot-names-in-map map))))
+
+(defun write-worlds ()
+  (let* ((maps (maps-with-robots)) (known (testbed-maps))
+         (games (remove-if-not (lambda (map) (member map known)) maps)))
+    (write-maps (remove-if (lambda (map) (member map known)) maps))
+    (when games
+      (format t "~%Worlds of testbeds (./cli/ars-magna testbed lists the testbeds):~%")
+      (write-maps games))))
