@@ -61,6 +61,8 @@ WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
      seeds workers directory stream time-limit)))
 
 (defun run-experiment-object (experiment seeds workers directory stream &optional time-limit)
+  "Register EXPERIMENT, so that failed trials can be listed, and run it. Return the results."
+  (register *experiments* (experiment-name experiment) experiment)
   (apply #'run-experiment (experiment-name experiment)
          :trials seeds :workers workers :directory directory :stream stream
          (and time-limit (list :time-limit time-limit))))

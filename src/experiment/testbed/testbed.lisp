@@ -13,7 +13,7 @@
 (define-record (testbed (:constructor make-testbed))
   "A testbed: an experiment on agents, with its rules and what is claimed about it."
   (name nil symbol "the symbol that names the testbed" :addition)
-  (documentation "" string "what the testbed is about, a string")
+  (documentation "" string "what the testbed is about, a string" :export)
   (rules '() list "the rules, strings" :addition)
   (sources '() list "where the rules are from, strings" :addition)
   (knobs '() list "the parameters that are knobs of the testbed, symbols" :addition)
@@ -264,5 +264,4 @@ those for testing."
                   :deciding (reseeded-clauses (testbed-deciding testbed) seed)
                   options)))
     (setf (experiment-package experiment) (testbed-package testbed))
-    (register *experiments* (testbed-name testbed) experiment)
     experiment))
