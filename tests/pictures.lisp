@@ -273,6 +273,19 @@
                          (drawn-with :text (plain-picture robot :scale 24 :layers '(:names))))))
       (is (equal '("box" "pen" "studio-robot") (sort names #'string<))))))
 
+(test names.give-way-to-labels
+  "The attribute :LABEL is written instead, and not at all if it is empty."
+  (in-studio (robot)
+    (flet ((names (&rest labels)
+             (loop for thing in '(box pen) for label in labels
+                   do (world:set-attribute (world:find-thing thing) :label label))
+             (sort (mapcar (lambda (text) (of-element text :text))
+                           (drawn-with :text (plain-picture robot :scale 24 :layers '(:names))))
+                   #'string<)))
+      (is (equal '("12" "studio-robot" "tool") (names 12 "tool")))
+      (is (equal '("pen" "studio-robot") (names "" nil)))
+      (is (equal '("box" "pen" "studio-robot") (names 1/2 'tool)) "neither a string nor integer"))))
+
 (test names.end-the-lines-that-they-lie-on
   "Each stands on white, drawn just before it, so no trail or ray goes through it."
   (in-studio (robot)

@@ -28,6 +28,16 @@ already has lower-case letters."
 (defun drawn-thing-name (image)
   (drawn-name (thing-name (thing-image-thing image))))
 
+;; Like :DOOR, the attribute :LABEL is not declared.
+(defun thing-label (image)
+  "Return the text for the thing of IMAGE on the map: its attribute :LABEL, a string or an integer,
+or else its name."
+  (let ((label (second (assoc :label (thing-image-attributes image)))))
+    (typecase label
+      (string label)
+      (integer (format nil "~D" label))
+      (t (drawn-thing-name image)))))
+
 (defun robot-label-target (robot robots &optional shown)
   "Return the label target for ROBOT, one of ROBOTS. SHOWN is the name of the robot that is drawn as
 a disc, or NIL."
@@ -48,7 +58,7 @@ a disc, or NIL."
   (list (thing-image-x image) (thing-image-y image) (thing-half-width image)))
 
 (defun thing-label-target (image hidden)
-  (make-label-target (format nil "~A~@[ and ~D more~]" (short-name (drawn-thing-name image))
+  (make-label-target (format nil "~A~@[ and ~D more~]" (short-name (thing-label image))
                              (and (plusp hidden) hidden))
                      (to-pixels (thing-image-x image)) (to-pixels (thing-image-y image))
                      (thing-half-width image) nil image))

@@ -175,11 +175,13 @@ must lead to the box."
 
 (defun place-name (placement target per-character &optional (test (constantly t)))
   "Return the name of TARGET, placed where PLACEMENT has room, or NIL. Its room is taken then. The
-value is also NIL if the function TEST returns false for the best box."
-  (multiple-value-bind (box led-p) (name-box placement target (name-width target per-character))
-    (when (and box (funcall test box))
-      (reserve-name-box placement box)
-      (make-placed-name target box led-p))))
+value is also NIL if the name of a thing is empty, or if the function TEST returns false for the
+best box."
+  (unless (and (label-target-thing target) (string= "" (label-target-name target)))
+    (multiple-value-bind (box led-p) (name-box placement target (name-width target per-character))
+      (when (and box (funcall test box))
+        (reserve-name-box placement box)
+        (make-placed-name target box led-p)))))
 
 ;;; Writing names.
 
