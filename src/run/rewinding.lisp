@@ -85,6 +85,19 @@ first, of requests made but not performed by then."
                                         state outside its run."
                                    tick))))
 
+;; Otherwise such a robot would just stop.
+(defun warn-of-ended-programs (run)
+  "Queue a warning about commands in progress in RUN that continuations have issued."
+  (let ((*message-queue* (simulation-messages run)))
+    (dolist (robot (simulation-robots run))
+      (loop for (nil nil nil command nil asker) in (mapcan #'command-in-progress-status
+                                                           (cons robot (robot-parts robot)))
+            do (when (starts-with-subseq "the continuation of " asker)
+                 (queue-notable-warning
+                  (format nil "~A: the program that issued ~(~A~) ends here. After a rewind, plans ~
+                               go on, but chains of continuations do not."
+                          (robot-label robot) command)))))))
+
 (defun repeat-past (past asked tick)
   "Return two values: a copy of the run of PAST at the end of the tick TICK, with the requests ASKED
 waiting; and the tick at which a plan diverged while the past was repeated, or NIL."
@@ -247,6 +260,7 @@ signal MISUSE."
     (multiple-value-bind (run diverged) (repeat-past past asked tick)
       (replace-run run simulation)
       (when diverged (warn-of-divergence run diverged))
+      (warn-of-ended-programs run)
       run)))
 
 (addition rewind)
