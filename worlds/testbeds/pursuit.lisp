@@ -202,7 +202,7 @@ not change places."
 
 (defmeasure capture-time "How many rounds until capture or escape." (rounds-played))
 
-(defmeasure captured "Whether the prey was captured." (captured-p))
+(defmeasure captured "Whether the prey was captured." (and (plusp *start*) (captured-p)))
 
 (defmeasure least-time "A lower bound on the time to capture, by the distances at the start."
   *least-time*)

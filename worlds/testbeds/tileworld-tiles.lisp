@@ -90,10 +90,10 @@
         *obstacles* (remove thing *obstacles*))
   (destroy-thing thing))
 
-(defun put-things (name cells life attributes)
+(defun put-things (name cells life attributes &optional (label ""))
   (loop for (x y) in cells
         for thing = (make-new-thing name (list* *world* (list (+ x .5) (+ y .5)))
-                                    `((:size 1) ,@attributes))
+                                    `((:size 16) (:label ,(shiftf label "")) ,@attributes))
         do (run-kicker (set-kicker thing 'vanish) life)
         collect thing))
 
@@ -107,7 +107,7 @@
     (when cells
       (push (list* id score now (+ now life)
                    (put-things 'hole cells life
-                               `((:hole ,id) (:score ,score) (:color violet))))
+                               `((:hole ,id) (:score ,score) (:color lightviolet)) score))
             *holes*))))
 
 (defun drop-tile (dice)
@@ -148,9 +148,9 @@
   "Let TILE fill CELL of a hole."
   (let* ((hole (find-hole (get-attribute cell :hole)))
          (rest (remove cell (hole-cells hole))))
-    (unless rest
-      (incf *score* (hole-worth hole))
-      (incf *filled*))
+    (cond (rest (set-attribute (first rest) :label (second hole)))
+          (t (incf *score* (hole-worth hole))
+             (incf *filled*)))
     (setf *holes* (if rest
                       (substitute (append (subseq hole 0 4) rest) (hole-id hole) *holes*
                                   :key #'hole-id)
@@ -165,21 +165,23 @@
                          (things-at *world* (thing-x tile) (thing-y tile)))))
       (when cell (fill-cell cell tile)))))
 
+(defun score-of-all () (max 1 (reduce #'+ *offered* :key #'first)))
+
 (defmeasure share
   "The score as a share of the scores of all holes, from 0 to 1."
-  (/ *score* (reduce #'+ *offered* :key #'first)))
+  (/ *score* (score-of-all)))
 
 (defmeasure filled "How many holes were filled." *filled*)
 
 (defmeasure bound
   "The share that fills the best holes with all tiles that have appeared: no agent has more."
-  (let ((tiles *supply*) (all (reduce #'+ *offered* :key #'first)) (score 0))
+  (let ((tiles *supply*) (score 0))
     (loop for (worth size) in (sort (copy-list *offered*) #'>
                                     :key (lambda (hole) (/ (first hole) (second hole))))
           for used = (min size tiles)
           do (incf score (* worth (/ used size)))
              (decf tiles used))
-    (/ score all)))
+    (/ score (score-of-all))))
 
 ;;; For agents.
 

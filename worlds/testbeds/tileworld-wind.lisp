@@ -109,8 +109,10 @@
 (defkicker gust (clock) (:prob 0)
   (run-kicker self (+ gust-interval* (roll-below (1+ (* 2 gust-interval*)))))
   (push (- (simulation-tick) *laid-out*) *gusts*)
-  (let ((step (nth (roll-below 4) '((1 0) (-1 0) (0 1) (0 -1)))))
-    (loop repeat gust-strength* do (blow step))))
+  (let ((side (roll-below 4)))
+    (set-attribute clock :label (format nil "~A, ~A" (nth side '("west" "east" "north" "south"))
+                                        (simulation-tick)))
+    (loop repeat gust-strength* do (blow (nth side '((1 0) (-1 0) (0 1) (0 -1)))))))
 
 ;;; Setting up.
 
@@ -138,12 +140,15 @@
              (target (roll-place offsets targets))
              (here (cells-at (roll-place offsets cells) offsets)))
         (setf cells (append here cells) targets (append (cells-at target offsets) targets))
+        (make-new-thing 'place (list *world* (+ .5 (first target)) (+ .5 (second target)))
+                        `((:size 40) (:color lightgreen) (:label ,(format nil "to ~D" id))))
         (push (list* id target offsets
                      (loop for (x y) in here
                            for first = t then nil
                            collect (make-new-thing
                                     'tile (list* *world* (list (+ x .5) (+ y .5)))
-                                    `((:size 1) (:weight 1) (:tile ,id) (:color blue)
+                                    `((:size 12) (:weight 1) (:tile ,id) (:color blue)
+                                      (:label ,(if first id ""))
                                       ,@(if first '((:handle t)))))))
               *tiles*)))
     (setf *laid-out* (simulation-tick)
