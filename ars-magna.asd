@@ -245,7 +245,7 @@
                    (:file "acting-lines") (:file "message-lines") (:file "measure-lines")
                    (:file "topics") (:file "help")
                    (:file "picture-lines") (:file "film-lines") (:file "plot-lines")
-                   (:file "other-runs")))
+                   (:file "trials") (:file "other-runs")))
      (:module "shell" :serial t
       :components ((:file "options") (:file "experiments") (:file "spreading")
                    (:file "experiment-command") (:file "testbeds") (:file "scripts")
@@ -368,7 +368,7 @@
                  (:file "cli-debugger") (:file "cli-answers") (:file "cli-sessions")
                  (:file "cli-going-on")
                  (:file "experiment-replay")
-                 (:file "cli-trials") (:file "cli-newcomers") (:file "cli-files")
+                 (:file "cli-trials") (:file "cli-games") (:file "cli-newcomers") (:file "cli-files")
                  (:file "cli-building") (:file "cli-plan-tree")
                  (:file "experiment-shell") (:file "experiment-shell-code")
                  (:file "rpl-seeing") (:file "rpl-breaking") (:file "rpl-timeline")

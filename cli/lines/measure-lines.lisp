@@ -8,6 +8,23 @@
                     defined: (defmeasure NAME form) defines one~;MEASURE lists all measures~]."
                    name (nearest-name name (measure-names)) (measure-names))))
 
+(defun measures-of-trial (session)
+  "Return the measures of the experiment of the trial that SESSION is in, or is in a fork of."
+  (let ((trial (or (session-trial session) (session-forked-trial session))))
+    (and trial
+         (loop for (name) in (experiment-measures (open-trial-experiment trial))
+               for measure = (find-measure name nil)
+               when measure collect measure))))
+
+(defun measures-typed (name session)
+  "Return the measures that NAME means in SESSION: one, or all if NAME is NIL. Those of a trial come
+first; several testbeds may have measures of the same name. Signals BAD-LINE."
+  (let ((own (measures-of-trial session)))
+    (if name
+        (list (or (find name own :key #'measure-name :test #'string-equal)
+                  (find-measure-typed name)))
+        (or own (all-measures)))))
+
 (defun read-measure (measure)
   "Return the value of MEASURE, and NIL; or NIL and the text of the error that its forms signalled."
   (handler-case (values (measure-value measure) nil)
@@ -25,12 +42,13 @@
                        (t (fact-text value)))
           :error trouble)))
 
-(define-line "MEASURE" (session (name :measure "a measure; all measures if left out" :optional))
+(define-line "MEASURE" (session (name :measure "a measure" :optional))
     (:seeing
      "(defmeasure NAME form) defines a measure. PLOT NAME plots it over time, and PICTURE file NAME
 writes its value above the picture.")
-    "Show the values that measures have now. In Lisp: (measure-value NAME)."
-  (let ((measures (if name (list (find-measure-typed name)) (all-measures))))
+    "Show the values that measures have now. In Lisp: (measure-value NAME). Without NAME, show those
+of the trial that you are in, or else all."
+  (let ((measures (measures-typed name session)))
     (current-simulation)
     (with-time-stopped
       (cond ((report-object (session-account session) "measures"

@@ -15,10 +15,31 @@
 
 (add-listener *rewind-hooks* forget-plan-jobs)
 
-(defun check-rewindable (session)
-  (check-run-not-over)
-  (when (session-trial session)
-    (reject-line "A trial cannot be rewound. TRIAL starts it again, at tick 0.")))
+;; The end of a trial is on the stack, so a trial is not rewound, but run again. Its programs go on.
+(defun repeat-trial (session trial tick)
+  "Open TRIAL again, and let TICK ticks pass, without messages from programs."
+  (let ((again (make-open-trial (open-trial-experiment trial) (open-trial-condition trial)
+                                (open-trial-number trial) (open-trial-directory trial)))
+        (quiet-p (shiftf (session-quiet-p session) t)))
+    (setf (open-trial-rate again) (open-trial-rate trial)
+          (open-trial-steps again) tick
+          (open-trial-stepped-p again) t
+          (open-trial-restore again) (lambda () (setf (session-quiet-p session) quiet-p)))
+    (leave-open-trial session (lambda () (run-trial-in-session session again)))))
+
+(defun rewind-trial (session trial tick)
+  (let ((changed (open-trial-changed trial)))
+    (when (minusp tick)
+      (reject-line "This trial is at tick ~D. Give at most that many ticks."
+                   (simulation-tick *simulation*)))
+    (when (and changed (< changed tick))
+      (reject-line "The run was changed at tick ~D. Go back to that tick, or before it." changed))
+    (repeat-trial session trial tick)))
+
+(defun rewind-to-tick (session tick)
+  (if (session-trial session)
+      (rewind-trial session (session-trial session) tick)
+      (rewind-and-report session (- (simulation-tick *simulation*) tick))))
 
 (defun rewind-and-report (session ticks)
   (let ((tick (- (simulation-tick *simulation*) ticks)))
@@ -36,58 +57,20 @@
     (:running)
     "Go back N ticks and continue from there, plans included. REWIND 0 undoes changes since the last
 tick. Later ticks are discarded; the journal records the rewind. Continuations waiting for a
-command, such as that of GO-TO, receive :INTERRUPT."
-  (check-rewindable session)
-  (rewind-and-report session n))
+command, such as that of GO-TO, receive :INTERRUPT. In a trial, programs go on, too: the trial is
+run again, up to that tick."
+  (check-run-not-over)
+  (rewind-to-tick session (- (simulation-tick *simulation*) n)))
 
 (define-line "REWIND-TO" (session (tick count "the tick to go back to"))
     (:running)
     "Go back to the end of TICK and continue from there, as with REWIND."
-  (check-rewindable session)
+  (check-run-not-over)
   (let ((now (simulation-tick *simulation*)))
     (unless (<= tick now) (reject-line "This run is at tick ~D. Give an earlier tick." now))
-    (rewind-and-report session (- now tick))))
+    (rewind-to-tick session tick)))
 
 ;;;; TRIAL
-
-;;; Which trial is meant.
-
-(defun experiment-names-matching (start)
-  "Return the experiment names that begin with START, or only START if START itself is a name."
-  (let ((experiment (find-experiment start nil)))
-    (if experiment
-        (list (experiment-name experiment))
-        (items-with-prefix (string-upcase start) (mapcar #'experiment-name (all-experiments))
-                           #'string))))
-
-(defun resolve-experiment (name)
-  "Return the experiment named NAME, or the only one whose name begins with NAME. Signals BAD-LINE."
-  (let ((names (experiment-names-matching name)))
-    (cond ((null names)
-           (reject-unknown-name "experiment" name (mapcar #'experiment-name (all-experiments))
-                        "TRIAL lists all; (load \"FILE\") loads others."))
-          ((rest names) (reject-ambiguous name names))
-          (t (find-experiment (first names))))))
-
-(defun resolve-condition (experiment text)
-  "Return the condition of EXPERIMENT for TEXT: a number, counted from 1, or a part of its name."
-  (find-condition experiment (or (ignore-errors (parse-integer text)) text)))
-
-;;; What is there.
-
-(defun write-experiments ()
-  (if (all-experiments)
-      (dolist (experiment (all-experiments))
-        (write-filled (first-full-sentence (experiment-description experiment)) 27
-                      (format nil "  ~(~A~)" (experiment-name experiment))))
-      (format t "No experiment is defined. (load \"FILE\") loads a file that has some.~%")))
-
-(defun write-experiment-conditions (experiment)
-  (format t "~(~A~), ~D trials of each condition by default:~%" (experiment-name experiment)
-          (experiment-trials experiment))
-  (loop for condition in (experiment-conditions experiment)
-        for number from 1
-        do (write-trimmed-line "  ~3D  ~A" number (condition-name condition))))
 
 (defun open-trial-name (trial)
   (format nil "trial ~D of ~(~A~), ~A" (open-trial-number trial)
@@ -197,6 +180,7 @@ at the next tick. A second Control-C before that tick leaves the trial."
                   #'values)
            (setf left-p t))
       (setf (session-trial session) nil)
+      (call-restore trial)
       (abandon-jobs session)
       (import-robot-names (current-robot-names))
       (unless left-p (format (session-console session) "~&The trial has been left.~%")))))
@@ -204,6 +188,10 @@ at the next tick. A second Control-C before that tick leaves the trial."
 (defun abandon-jobs (session)
   (dolist (job (shiftf (session-jobs session) '()))
     (when (plan-job-p job) (close-job job))))
+
+(defun run-trial-in-session (session trial)
+  "Run TRIAL in SESSION, with the session's own run paused, and what follows on it."
+  (funcall (call-with-run-paused (lambda () (enter-trial session trial)))))
 
 (defun open-trial-in-session (session trial)
   (flet ((enter ()
@@ -213,7 +201,7 @@ at the next tick. A second Control-C before that tick leaves the trial."
                      (trial-seed (open-trial-experiment trial) (open-trial-number trial))
                      (experiment-limit (open-trial-experiment trial)))
            (unless (can-poll-input-p session) (setf (open-trial-rate trial) :free))
-           (funcall (call-with-run-paused (lambda () (enter-trial session trial))))))
+           (run-trial-in-session session trial)))
     (call-after-leaving-trial session #'enter)))
 
 (defun leave-trial (session)
@@ -222,13 +210,14 @@ at the next tick. A second Control-C before that tick leaves the trial."
                     (lambda () (format t "You have left the trial~@[ for ~(~A~)~].~%"
                                        (and *simulation* (simulation-name *simulation*))))))
 
-(define-line "TRIAL" (session (name :experiment "the name of an experiment, or OFF" :optional)
+(define-line "TRIAL" (session (name :experiment "an experiment or testbed, or OFF" :optional)
                               (condition :token "the number of a condition, or a part of its name"
                                          :optional)
                               (number count "the number of the trial" :optional)
                               (directory :token "the directory of its row" :optional))
     (:running)
-    "Enter a trial of an experiment, at tick 0, exactly as the experiment runs the trial. STEP,
+    "Enter a trial of an experiment, at tick 0, exactly as the experiment runs the trial. Of a
+testbed, CONDITION is AGENT or AGENT,KNOB=VALUE, as in TRIAL tileworld bold,dynamism=64 1. STEP,
 RESUME and RATE let time pass; STATUS, PLAN-TREE, WHY and others show the state; SAVE-JOURNAL saves
 the run. Without a terminal, RESUME runs the trial to its end. With DIRECTORY, the outcome of the
 trial is compared with its row in the table there. TRIAL OFF leaves the trial, as do WORLD and
@@ -239,14 +228,15 @@ current trial."
         ((null name) (write-experiments))
         ((and (string-equal name "off") (null condition)) (leave-trial session))
         ((null number)
-         (let ((experiment (resolve-experiment name)))
-           (when condition (resolve-condition experiment condition))
-           (write-experiment-conditions experiment)))
-        (t (let ((experiment (resolve-experiment name)))
+         (let ((question (resolve-question name)))
+           (when condition (resolve-condition question condition))
+           (if (testbed-p question)
+               (write-games question)
+               (write-experiment-conditions question))))
+        (t (multiple-value-bind (experiment condition)
+               (resolve-condition (resolve-question name) condition)
              (open-trial-in-session session
-                                    (make-open-trial experiment
-                                                     (resolve-condition experiment condition)
-                                                     number directory))))))
+                                    (make-open-trial experiment condition number directory))))))
 
 (define-line "FAILURES" (session (name :token "a directory, or an experiment that was run here")
                                  (condition :token "a part of a condition's name" :optional))
@@ -255,7 +245,7 @@ current trial."
 line that opens such a trial."
   (let ((names (experiment-names-matching name)))
     (print-failures (if (and names (null (rest names)) (not (existing-path (path-of-name name))))
-                        (first names)
+                        (experiment-run-here (first names))
                         name)
                     condition)))
 
@@ -274,19 +264,27 @@ line that opens such a trial."
            (call-guarded session (lambda () (show-messages session)))))
 
 (defun enter-fork (session fork)
-  "Run SESSION in FORK until a line leaves FORK. Earlier jobs are set aside meanwhile."
+  "Run SESSION in FORK until a line leaves FORK. Earlier jobs, and the trial that SESSION is in, are
+set aside meanwhile."
   (let ((jobs (shiftf (session-jobs session) '()))
+        (trial (shiftf (session-trial session) nil))
+        (outer (session-forked-trial session))
         (depth (session-forks session)))
-    (setf (session-forks session) (1+ depth))
+    (setf (session-forks session) (1+ depth)
+          (session-forked-trial session) (or trial outer))
     (unwind-protect (catch 'left-fork
                       (call-in-fork fork (lambda () (read-lines-in-fork session))))
       (abandon-jobs session)
       (setf (session-jobs session) jobs
+            (session-trial session) trial
+            (session-forked-trial session) outer
             (session-forks session) depth))))
 
 (defun enter-new-fork (session seed)
   "Run SESSION in a fork of the current run until a line leaves the fork; then discard the fork."
-  (let ((fork (if seed (fork-simulation :seed seed) (fork-simulation))) (run *simulation*))
+  (let ((fork (apply #'fork-simulation :continuations (and (session-trial session) t)
+                     (and seed (list :seed seed))))
+        (run *simulation*))
     (keep-forks t fork)
     (tell-other-sessions session run
                          (format nil "Another prompt is in a fork of the run, which is paused.~%"))
@@ -303,12 +301,11 @@ line that opens such a trial."
 (define-line "FORK" (session (seed :off "OFF, or an integer: the seed of the copy"
                                    :optional))
     (:running)
-    "Continue in a copy of the run, plans included. The copy does exactly what the run would do.
-With SEED, the copy has other random numbers. The run itself is paused. FORK OFF discards the copy
-and returns to the run, which has not changed."
+    "Continue in a copy of the run, plans included. The copy does exactly what the run would do. In
+a fork of a trial, programs go on, too. With SEED, the copy has other random numbers. The run itself
+is paused. FORK OFF discards the copy and returns to the run, which has not changed."
   (check-run-not-over)
-  (cond ((session-trial session) (reject-line "A trial cannot be forked. TRIAL OFF leaves it."))
-        ((null seed) (enter-new-fork session nil))
+  (cond ((null seed) (enter-new-fork session nil))
         ((string-equal seed "off")
          (when (zerop (session-forks session)) (reject-line "The prompt is not in a fork."))
          (throw 'left-fork t))

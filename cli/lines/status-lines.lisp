@@ -58,11 +58,20 @@
 ;;; The layout of STATUS is that of the session in manual E. The estimated change of position is
 ;;; added, which the manual lists and its session omits. The contents are those of (status).
 
+(defconstant +most-readings+ 40 "The most readings of a camera that STATUS writes.")
+
+(defun view-text (view)
+  "Return the readings in VIEW as text; of more than +MOST-READINGS+ the first, and their number."
+  (let ((count (length view)))
+    (if (<= count +most-readings+)
+        (format nil "~{~,2F~^ ~}" view)
+        (format nil "~{~,2F ~}... (~D readings)" (subseq view 0 8) count))))
+
 (defun write-views (cameras)
   (loop for camera in cameras
         for start = "View:  " then "          "
-        do (write-trimmed-line "~ACamera ~D: ~:[~;TRACK ~]~{~,2F~^ ~}" start
-                               (getf camera :number) (getf camera :tracks) (getf camera :view))))
+        do (write-trimmed-line "~ACamera ~D: ~:[~;TRACK ~]~A" start (getf camera :number)
+                               (getf camera :tracks) (view-text (getf camera :view)))))
 
 (defun write-designator (designator)
   (write-trimmed-line "~D ~A @ ~A" (getf designator :number) (designator-kind-text designator)

@@ -220,7 +220,7 @@ included. Return NIL if the choices are not known. May signal BAD-LINE, as witho
   (append (mapcar #'parameter-name (all-parameters)) '("clean" "default")))
 (define-argument-choices :switch '(on off))
 (define-argument-choices :off '(off))
-(define-argument-choices :experiment (append (mapcar #'experiment-name (all-experiments)) '(off)))
+(define-argument-choices :experiment (append (question-names) '(off)))
 
 ;;; Worlds and robots.
 

@@ -148,6 +148,7 @@ SESSION and its Lisp are done."
       (progn (await-jobs session)
              (setf (session-lisp-p session)
                    (and (shiftf (session-lisp-p session) nil)
+                        (null (session-forked-trial session))
                         (not (await-requests))
                         (paused-for-good-p *simulation*)))
              (call-before-line-hooks session))

@@ -15,6 +15,8 @@
   ;; How many ticks are to pass before the next line, and whether to report when they have.
   (steps 0 :type (integer 0))
   (stepped-p nil :type boolean)
+  ;; After a rewind, a function to call when these ticks have passed again; else NIL.
+  (restore nil :type (or null function))
   ;; The progress line at a terminal, or NIL.
   (progress nil)
   ;; Ticks pass by themselves, at RATE, the next when it is DUE.
@@ -143,6 +145,16 @@
 
 ;;; Between ticks.
 
+(defun call-restore (trial)
+  (let ((restore (shiftf (open-trial-restore trial) nil)))
+    (when restore (funcall restore))))
+
+(defun end-repetition (session trial)
+  "If the ticks before a rewind have passed again in TRIAL, show what is not hidden meanwhile."
+  (when (open-trial-restore trial)
+    (call-outside-trial (lambda () (show-messages session)))
+    (call-restore trial)))
+
 (defun report-trial-stop (session trial)
   "Report that the ticks which were to pass in TRIAL have passed, or were stopped."
   (when (shiftf (open-trial-interrupted-p trial) nil)
@@ -150,6 +162,7 @@
     (setf (open-trial-stepped-p trial) t))
   (when (and (zerop (open-trial-steps trial)) (shiftf (open-trial-stepped-p trial) nil))
     (when (open-trial-progress trial) (end-progress (shiftf (open-trial-progress trial) nil)))
+    (end-repetition session trial)
     (format (session-console session) "~&Tick ~D.~%" (simulation-tick *simulation*))))
 
 (defun time-of-next-tick (trial)

@@ -122,6 +122,8 @@ NIL. OTHERS are the breaks in other threads, the oldest first."
   (whereabouts nil)
   ;; The trial that it is in, or NIL, and how many nested forks it is in.
   (trial nil)
+  ;; While it is in a fork of a trial, that trial. The programs in it never end.
+  (forked-trial nil)
   (forks 0 :type fixnum)
   ;; The names of the plans that it has started; those of a rewound run are its own, too.
   (plans '() :type list)

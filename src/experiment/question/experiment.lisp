@@ -95,7 +95,7 @@ name counts. Other parameters have the value without noise if CLEAN is true, els
   (until nil (or null function) "a function of the variables' values, or NIL" :writable)
   (success nil (or null function) "a function of the variables' values, or NIL" :writable)
   (measures '() list "what is measured at the end of a trial, lists (name function); or (name
-function summary) for the summary of what is measured from tick to tick" :writable)
+function summary) for the summary of what is measured from tick to tick" :writable :export)
   (series '() list "what is measured from tick to tick, lists (name function)" :writable)
   (variables '() list :writable)
   (form '() list "the whole form" :writable)

@@ -170,8 +170,11 @@ file, also save the journal there."
 
 (defun trial-prompt-line (experiment condition trial)
   "Return the prompt line that opens TRIAL of CONDITION of EXPERIMENT."
-  (format nil "trial ~(~A~) ~D ~D" (experiment-name experiment)
-          (1+ (position condition (experiment-conditions experiment)))
+  (format nil "trial ~(~A~) ~A ~D" (experiment-name experiment)
+          ;; An experiment made for a trial is found by no number.
+          (if (eq experiment (find-experiment (experiment-name experiment) nil))
+              (1+ (position condition (experiment-conditions experiment)))
+              (prompt-argument (condition-name condition)))
           trial))
 
 (defun run-for-replay (experiment condition trial until rate step journal then)
