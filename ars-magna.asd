@@ -176,7 +176,7 @@
     :components ((:file "replaying") (:file "failures")))
    (:module "src/experiment/testbed" :serial t
     :components ((:file "relations") (:file "testbed") (:file "running") (:file "games")
-                 (:file "claims") (:file "page")))
+                 (:file "claims") (:file "game-picture") (:file "page")))
    (:module "src" :components ((:file "all"))))
   ;; The packages are locked once they are loaded.
   :perform (prepare-op (operation system)

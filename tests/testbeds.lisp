@@ -188,6 +188,22 @@
           (is (search "| bold | " page))
           (is (string= page (page 2))))))))
 
+;;; Pictures.
+
+(test testbed.picture-of-a-game-is-the-same-each-time
+  (experiment::call-with-temporary-directory
+   (lambda (directory)
+     (flet ((picture (&rest options)
+              (base:file-text (apply #'experiment:save-game-picture 'ars-testbeds:tileworld
+                                     (uiop:subpathname directory "game.svg") options))))
+       (let ((picture (picture :until 900)))
+         (is (string= picture (picture :until 900)))
+         (is (string= picture (picture :until 900 :agent 'bold)) "the agent of the first claim")
+         (is (search "tileworld, bold, trial 1, tick 900" picture))
+         (is (search "effectiveness" picture))
+         (is (string/= picture (picture :until 900 :trial 2))))
+       (signals base:unknown-name (picture :agent 'boldest))))))
+
 ;;; Tables.
 
 (test run-testbed.records-the-knobs-that-were-set

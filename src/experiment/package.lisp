@@ -12,6 +12,7 @@ resumed, on all processors and on many machines. Names lparallel.")
   (:import-from :ars-magna.trails #:update-trails #:trails-to-ways #:save-picture-of-ways)
   (:import-from :ars-magna.display
                 #:take-snapshot #:snapshot-robots #:picture-kind #:keep-history
+                #:save-picture
                 #:open-display #:*display-opener* #:group-by)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
                 #:custody-questions #:timeline-phase
