@@ -141,7 +141,7 @@
              (here (cells-at (roll-place offsets cells) offsets)))
         (setf cells (append here cells) targets (append (cells-at target offsets) targets))
         (make-new-thing 'place (list *world* (+ .5 (first target)) (+ .5 (second target)))
-                        `((:size 40) (:color lightgreen) (:label ,(format nil "to ~D" id))))
+                        `((:size 20) (:color lightgreen) (:label ,(format nil "to ~D" id))))
         (push (list* id target offsets
                      (loop for (x y) in here
                            for first = t then nil
