@@ -11,11 +11,11 @@
 (test game.is-opened-by-agent-knobs-and-seeds
   (let ((text (game-text "trial tileworld cautious,holes=3 2" "resume"
                          "trial tileworld \"agent=cautious holes*=3\" 2" "resume"
-                         "trial tileworld-wind agent=watchful,tuning,steps=9 1" "resume")))
+                         "trial tileworld-wind agent=watchful,tuning,game-steps=9 1" "resume")))
     (is-true (has-words-p text "Trial 2 of tileworld, agent=cautious holes*=3: seed 2,"
                           "over at tick 1301: success. effectiveness 0.4, filled 1."
                           "over at tick 1301: success."
-                          "Trial 1 of tileworld-wind, agent=watchful steps*=9: seed 1000001,"
+                          "Trial 1 of tileworld-wind, agent=watchful game-steps*=9: seed 1000001,"
                           "over at tick 18: success."))))
 
 (test game.is-the-trial-that-the-testbed-runs

@@ -8,7 +8,7 @@
   "Run BODY in a game of the testbed TILEWORLD-WIND that begins, and whose states are kept."
   `(run:with-simulation ('ars-testbeds.wind:carrier
                          :seed ,seed :clean t :thinking :charged :journal t :keep t :errors :signal
-                         :parameters (list* '(ars-testbeds.wind:steps* 200)
+                         :parameters (list* '(ars-testbeds.wind:game-steps* 200)
                                             '(base:scan-density* 1000)
                                             (list 'ars-testbeds.wind:gust-interval* ,interval)
                                             (list 'ars-testbeds.wind:gust-strength* ,strength)
@@ -40,7 +40,7 @@
   (dolist (strength '(0 8))
     (loop for (shares bounds)
             in (wind-measures '(random-walk watchful blind-camera flexible-camera clairvoyant)
-                              `((gust-strength* ,strength) (gust-interval* 10) (steps* 120))
+                              `((gust-strength* ,strength) (gust-interval* 10) (game-steps* 120))
                               "in-place" "bound")
           do (is (every #'<= shares bounds) "~A ~A" shares bounds)
              (is (every (lambda (bound) (< bound 1)) bounds)))))
@@ -48,7 +48,7 @@
 (test wind.bound-of-a-single-tile-is-short-of-the-time-to-grasp-it
   "Without wind the bound is reached, but for the 16 ticks to grasp the tile and put it down."
   (destructuring-bind ((shares bounds))
-      (wind-measures '(watchful) '((gust-strength* 0) (tile-count* 1) (steps* 200))
+      (wind-measures '(watchful) '((gust-strength* 0) (tile-count* 1) (game-steps* 200))
                      "in-place" "bound")
     (loop for share in shares
           for bound in bounds
@@ -76,7 +76,7 @@
 
 (test wind.clairvoyance-helps
   (destructuring-bind ((fair) (clairvoyant))
-      (wind-measures '(look-ahead clairvoyant) '((steps* 200)) "in-place")
+      (wind-measures '(look-ahead clairvoyant) '((game-steps* 200)) "in-place")
     (is (< (reduce #'+ fair) (reduce #'+ clairvoyant)))))
 
 (test wind.tiles-are-put-down-only-where-they-fit

@@ -56,6 +56,13 @@
   "Return what the error says that FUNCTION signals, on one line."
   (base:one-line (said-by function)))
 
+(test testbeds.knobs-have-names-of-their-own
+  (with-race ((:score ars-test-race:metres))
+    (flet ((definition (name)
+             (list 'ars-test-race::define-knob name 1 "metres" '(integer 0 9) "Another.")))
+      (is (search "left* is a parameter" (line-said-by (lambda () (eval (definition 'left*))))))
+      (eval (definition 'ars-test-race:left*)))))
+
 ;;; Claims.
 
 (test claims.need-enough-seeds
@@ -149,7 +156,7 @@
   (with-race ((:score ars-test-race:metres) (:sweeps ((ars-test-race:left* 1 3 5))))
     (multiple-value-bind (page pictures files) (race-page 4)
       (is (search "![metres by left*: slow, quick](race/sweep-1-1.svg)" page))
-      (is (equal '("sweep-1-1.svg") pictures))
+      (is (equal '("game.svg" "sweep-1-1.svg") pictures))
       (is (equal '("race.md") (remove "" files :test #'string=))))))
 
 (test page.stays-if-an-agent-has-an-error

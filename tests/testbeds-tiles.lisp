@@ -130,7 +130,7 @@
   (run:with-simulation ('ars-testbeds.wind:carrier
                         :seed 2 :clean t :errors :signal
                         :parameters (append '((ars-testbeds.wind:gust-interval* 3)
-                                              (ars-testbeds.wind:steps* 100))
+                                              (ars-testbeds.wind:game-steps* 100))
                                             *grid-parameters*))
     (ars-testbeds.wind:play 'ars-testbeds.wind::idle)
     (is (plusp (run:measure-value 'ars-testbeds.wind:blown)))
@@ -144,7 +144,7 @@
   (flet ((state () (list (run:measure-value 'ars-testbeds.wind:in-place) (run:state-digest))))
     (run:with-simulation ('ars-testbeds.wind:carrier
                           :seed 3 :clean t :thinking :charged :journal t :errors :signal
-                          :parameters (append '((ars-testbeds.wind:steps* 100)) *grid-parameters*))
+                          :parameters (append '((ars-testbeds.wind:game-steps* 100)) *grid-parameters*))
       (ars-testbeds.wind:play 'ars-testbeds.wind::watchful)
       (let ((journal (run:simulation-journal (time:current-simulation))) (end (state)))
         (is (plusp (first end)))
@@ -156,7 +156,7 @@
 (test wind.without-it-all-tiles-get-to-their-places
   (let ((results (experiment:run-testbed 'tileworld-wind
                                          :agents '(watchful) :seeds 4 :stream nil
-                                         :knobs '((gust-strength* 0) (steps* 1500)))))
+                                         :knobs '((gust-strength* 0) (game-steps* 1500)))))
     (is (every (lambda (share) (< 0.9 share 1))
                (experiment:sample-measure results (first (experiment:results-samples results))
                                           "in-place")))))

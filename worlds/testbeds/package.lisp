@@ -21,6 +21,6 @@
 (ars:define-user-package :ars-testbeds.wind
   (:documentation "NASA Tileworld: tiles of several cells, a robot that carries them, and wind.")
   (:export #:tileworld-wind #:carrier #:in-place #:blown #:bound
-           #:gust-interval* #:gust-strength* #:tile-count* #:tile-cells* #:steps*
+           #:gust-interval* #:gust-strength* #:tile-count* #:tile-cells* #:game-steps*
            #:tiles #:tile-thing #:tile-target #:tile-in-place-p #:held-tile #:step-to
            #:grasp-tile #:put-down #:rest-a-step #:game-over-p #:play))

@@ -6,7 +6,7 @@
 (in-package :ars-testbeds.wind)
 (in-readtable :nisp)
 
-(define-knob steps* 400 "steps" (integer 1 1000000) "How long a game lasts.")
+(define-knob game-steps* 400 "steps" (integer 1 1000000) "How long a game lasts.")
 (define-knob gust-interval* 20 "steps" (integer 1 100000)
   "How much time passes between two gusts of wind, in the mean.")
 (define-knob gust-strength* 2 "cells" (integer 0 15) "How far a gust moves a tile at most.")
@@ -38,7 +38,7 @@
 (defun tile-target (tile) "Return the place of TILE, the cell (x y) of its first cell."
   (second tile))
 (defun find-tile (id) "Return the tile with the number ID." (assoc id *tiles*))
-(defun game-over-p () "True if the game has ended." (<= (* 2 steps*) (simulation-tick)))
+(defun game-over-p () "True if the game has ended." (<= (* 2 game-steps*) (simulation-tick)))
 
 (defun held-tile ()
   "Return the tile that the robot holds, or NIL."
@@ -240,7 +240,7 @@ agent that moves by steps has more."
     (run-kicker (set-kicker (find-thing 'clock) kicker)))
   (run-ticks 1)
   (start-agent agent)
-  (run-ticks (max 0 (- (* 2 steps*) (simulation-tick))))
+  (run-ticks (max 0 (- (* 2 game-steps*) (simulation-tick))))
   t)
 
 (define-testbed tileworld-wind
@@ -258,7 +258,7 @@ or a tile that cannot move stops them."
 same tiles, places and gusts.")
   (:sources "Philips, Swanson, Drummond and Bresina, A design rationale for NASA TileWorld,
 NASA Ames 1991.")
-  (:knobs steps* gust-interval* gust-strength* tile-count* tile-cells*)
+  (:knobs game-steps* gust-interval* gust-strength* tile-count* tile-cells*)
   (:agents (idle "Does nothing.")
            (random-walk "Steps in random directions; grasps and puts down tiles at random.")
            (blind "Naive: goes to where the tile was when it decided, then decides again.")
@@ -283,10 +283,12 @@ NASA Ames 1991.")
   (:claims
    ("The more often the wind blows, the less the robot achieves."
     (((gust-strength* 1)) ((gust-strength* 2)))
-    (:narrows watchful idle (gust-interval* 40 10)) (:narrows blind idle (gust-interval* 40 10)))
+    (:better (watchful (gust-interval* 40)) (watchful (gust-interval* 10)) 0)
+    (:better (blind (gust-interval* 40)) (blind (gust-interval* 10)) 0))
    ("The stronger the wind, the less the robot achieves."
     (((gust-interval* 10)) ((gust-interval* 20)))
-    (:narrows watchful idle (gust-strength* 1 4)) (:narrows blind idle (gust-strength* 1 4)))
+    (:better (watchful (gust-strength* 1)) (watchful (gust-strength* 4)) 0)
+    (:better (blind (gust-strength* 1)) (blind (gust-strength* 4)) 0))
    ("It helps to follow the tile."
     (((gust-strength* 2)) ((gust-strength* 4)))
     (:better watchful blind 0))

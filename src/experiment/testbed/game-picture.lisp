@@ -4,10 +4,10 @@
 
 (defun claimed-agent (testbed)
   "Return the agent that the first claim of TESTBED is about, or else its last agent."
-  (destructuring-bind (&optional text settings (relation '()) &rest more)
-      (first (testbed-claims testbed))
-    (declare (ignore text settings more))
-    (or (second relation) (first (first (last (testbed-agents testbed)))))))
+  (let ((claim (first (testbed-claims testbed))))
+    (if claim
+        (first (ensure-list (second (first (claim-relations claim)))))
+        (first (first (last (testbed-agents testbed)))))))
 
 (addition save-game-picture)
 (defun save-game-picture (name file &key agent (trial 1) until)

@@ -159,6 +159,7 @@ Write the progress to the stream PROGRESS unless that is NIL."
     (run-games-of-page testbed games seeds few)
     (format stream "# ~(~A~)~2%" (testbed-name testbed))
     (write-wrapped (one-line (testbed-documentation testbed)) stream)
+    (format stream "~%![A game](~(~A~)/game.svg)~%" (testbed-name testbed))
     (write-markdown-list "Rules" (testbed-rules testbed) stream)
     (write-markdown-list "Knobs" (mapcar #'knob-line (testbed-knobs testbed)) stream)
     (write-markdown-list "Agents" (loop for (name text) in (testbed-agents testbed)
@@ -179,8 +180,10 @@ file of the page."
          (file (merge-pathnames (format nil "~A.md" name) directory)))
     ;; Of a former page there may have been more pictures.
     (mapc #'delete-file (directory (merge-pathnames "sweep-*.svg" folder)))
+    (save-game-picture (testbed-name testbed)
+                       (merge-pathnames "game.svg" (ensure-store-directory folder)))
     (loop for (picture nil chart) in pictures
-          do (save-chart (merge-pathnames picture (ensure-store-directory folder)) chart))
+          do (save-chart (merge-pathnames picture folder) chart))
     (overwrite-file (lambda (stream) (write-string text stream))
                     file "the page of results" :remedy "give another directory")
     file))
@@ -191,8 +194,7 @@ file of the page."
 NAME.md, with pictures in NAME/. Each page is written once it is complete. Claims are checked on as
 many SEEDS; tables of all agents have a quarter of them. The page is the same on each machine and
 for any number of WORKERS. Progress is written to STREAM unless that is NIL. Return a list of the
-files. Signals UNKNOWN-NAME, and MISUSE if DIRECTORY
-cannot be made or an agent has an error."
+files. Signals UNKNOWN-NAME, and MISUSE if DIRECTORY cannot be made or an agent has an error."
   (let ((directory (ensure-store-directory directory)))
     (loop for testbed in (if (eq :all names) (all-testbeds) (mapcar #'find-testbed names))
           collect (save-testbed-page testbed directory seeds workers stream))))

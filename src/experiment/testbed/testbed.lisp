@@ -187,6 +187,14 @@ Signals MALFORMED-DEFINITION."
                            (list ,@(cddr (definition-form name documentation experiment
                                            form))))))))
 
+(defun check-knob-name (definition name)
+  "Signal MALFORMED-DEFINITION if a parameter has the name of NAME, but is another symbol."
+  (let* ((known (find-parameter name nil)) (symbol (and known (parameter-symbol known))))
+    (when (and symbol (not (eq name symbol)) (symbol-package symbol))
+      (reject-clause definition name
+                     (format nil "another name: ~(~S~) is a parameter, and parameters are found by ~
+                                  their names without packages" symbol)))))
+
 (addition define-knob)
 (define-user-macro define-knob (name default unit type documentation)
   "Define the parameter NAME, a special variable, for a testbed. TYPE gives the range, as in (real 0
@@ -197,6 +205,7 @@ run. Return NAME. Signals MALFORMED-DEFINITION."
     (unless (and name (symbolp name) (users-symbol-p name)
                  (member (variable-kind name) '(nil :special)))
       (reject-clause definition name "a symbol that is no other variable"))
+    (check-knob-name definition name)
     (unless (and (stringp unit) (stringp documentation))
       (reject-clause definition (list unit documentation) "a unit and a sentence, two strings"))
     (unless (typep type '(or (cons (member real integer) (cons real (cons real null)))
