@@ -144,7 +144,8 @@
   (flet ((state () (list (run:measure-value 'ars-testbeds.wind:in-place) (run:state-digest))))
     (run:with-simulation ('ars-testbeds.wind:carrier
                           :seed 3 :clean t :thinking :charged :journal t :errors :signal
-                          :parameters (append '((ars-testbeds.wind:game-steps* 100)) *grid-parameters*))
+                          :parameters (append '((ars-testbeds.wind:game-steps* 100))
+                                              *grid-parameters*))
       (ars-testbeds.wind:play 'ars-testbeds.wind::watchful)
       (let ((journal (run:simulation-journal (time:current-simulation))) (end (state)))
         (is (plusp (first end)))
