@@ -287,5 +287,9 @@ quadrant-weight* for each of the four quadrants around the prey that holds a pre
   (:sweeps ((predators* 4 5)))
   (:claims
    ("Level 1 never captures the prey." (()) (:measure captured) (:within level-1 still 0))
-   ("Greedy predators take longer than level 2." (()) (:better level-2 greedy 1))
-   ("Level 2 takes longer than level 4." (()) (:better level-4 level-2 1))))
+   ("Greedy predators take longer than level 2."
+    (() ((ties* :first) (prey-stays* t) (metric* :straight)))
+    (:better level-2 greedy 1))
+   ("Level 2 takes longer than level 4."
+    (() ((ties* :first) (prey-stays* t) (metric* :straight)))
+    (:better level-4 level-2 1))))
