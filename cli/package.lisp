@@ -67,6 +67,7 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:testbed-knobs #:testbed-score #:run-testbed #:save-testbed-pages
                 #:write-testbed-list #:agent-p #:write-agents-order #:count-broken-trials
                 #:first-broken-trial #:testbed-robots #:parameter-of-variable
-                #:testbed-p #:testbed-experiment #:testbed-documentation #:experiment-measures)
+                #:settings-text #:testbed-p #:testbed-experiment #:testbed-documentation
+                #:experiment-measures)
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream
            #:stream-line-column #:stream-write-char #:stream-write-string #:stream-read-char))

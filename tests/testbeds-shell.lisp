@@ -61,7 +61,10 @@
     (flet ((definition (name)
              (list 'ars-test-race::define-knob name 1 "metres" '(integer 0 9) "Another.")))
       (is (search "left* is a parameter" (line-said-by (lambda () (eval (definition 'left*))))))
-      (eval (definition 'ars-test-race:left*)))))
+      (is (search "left* is a parameter"
+                  (line-said-by (lambda () (eval (definition 'ars-test-race:left*))))))
+      (let ((*package* (find-package :ars-test-race)))
+        (is (eq 'ars-test-race:left* (eval (definition 'ars-test-race:left*))))))))
 
 ;;; Claims.
 

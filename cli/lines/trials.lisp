@@ -79,8 +79,9 @@ The word TUNING in TEXT chooses the seeds for tuning. Signals BAD-LINE."
                     ~(~A~) lists agents and knobs." text agents (testbed-name testbed)))
     (let ((experiment (testbed-experiment
                        testbed (list (agent-named (first agents) testbed))
-                       :settings (loop for word in (remove-if #'word-of-agent words)
-                                       collect (knob-setting (parse-setting word) testbed))
+                       :settings (check-set-once
+                                  (loop for word in (remove-if #'word-of-agent words)
+                                        collect (knob-setting (parse-setting word) testbed)))
                        :tuning (and tuning t))))
       (values experiment (first (experiment-conditions experiment))))))
 

@@ -27,6 +27,9 @@
                (when key (reject-usage control (testbed-option key))))))
       (when (rest words)
         (reject-usage "testbed takes the name of one testbed, not ~{~A~^ and ~}." words))
+      (dolist (key '(:seeds :out :workers :time-limit))
+        (when (rest (option-values key options))
+          (reject-usage "~A was given twice. Give it once." (testbed-option key))))
       (cond ((member :all given)
              (reject-if-given '(:agent :knob :tuning :time-limit)
                               "--all runs all agents for a page of results; leave out ~A.")
@@ -45,6 +48,13 @@
 (defun full-name (symbol)
   (format nil "~(~A::~A~)" (package-name (symbol-package symbol)) symbol))
 
+(defun playable-p (symbol)
+  "True if SYMBOL names a plan, or a function of a program that can be called without arguments."
+  (and (agent-p symbol)
+       (or (find-procedure symbol nil)
+           (and (not (starts-with-subseq "SB-" (package-name (symbol-package symbol))))
+                (callable-with-count-p symbol 0)))))
+
 (defun agents-named (text names)
   "Return the agents of the name or full name TEXT: those among NAMES, and plans and functions that
 are no agents of other testbeds."
@@ -52,7 +62,7 @@ are no agents of other testbeds."
          (name (subseq text (if end (1+ (position #\: text :from-end t)) 0))))
     (remove-if-not (lambda (symbol)
                      (and (or (member symbol names)
-                              (and (users-symbol-p symbol) (agent-p symbol)
+                              (and (users-symbol-p symbol) (playable-p symbol)
                                    (notany (lambda (testbed)
                                              (assoc symbol (testbed-agents testbed)))
                                            (all-testbeds))))
@@ -83,34 +93,42 @@ are no agents of other testbeds."
       (unless symbol
         (reject-line "~(~A~) has no knob ~A. Known: ~{~(~A~)~^, ~}." (testbed-name testbed) name
                      (testbed-knobs testbed)))
-      (list symbol (knob-value symbol (parameter-of-variable symbol) text)))))
+      (list symbol (knob-value (parameter-of-variable symbol) text)))))
 
-(defun knob-value (knob parameter text)
-  "Return the value of KNOB that TEXT is, which PARAMETER, unless NIL, must be able to have."
+(defun knob-value (parameter text)
+  "Return the value of PARAMETER, a knob, that the whole of TEXT is."
   (flet ((reject ()
-           (reject-line "~(~A~) cannot be ~A.~@[ Give ~A.~]" knob text
-                        (and parameter (describe-type (parameter-type parameter))))))
-    (let ((value (handler-case (read-data-from-string text 0) (error () (reject)))))
-      (when parameter
-        (handler-case (check-parameter-value parameter value) (wrong-argument () (reject))))
+           (reject-line "~A cannot be ~A. Give ~A." (parameter-name parameter) text
+                        (describe-type (parameter-type parameter)))))
+    (multiple-value-bind (value end)
+        (handler-case (read-data-from-string text 0) (error () (reject)))
+      (unless (= end (length text)) (reject))
+      (handler-case (check-parameter-value parameter value) (wrong-argument () (reject)))
       value)))
+
+(defun check-set-once (settings)
+  "Return SETTINGS, lists (knob value). Signal BAD-LINE if a knob is set twice."
+  (loop for ((knob) . others) on settings
+        do (when (assoc knob others)
+             (reject-line "The knob ~(~A~) is set twice. Set it once." knob)))
+  settings)
 
 (defun knob-settings (testbed options)
   "Return the settings of OPTIONS, lists (symbol value)."
-  (let ((settings (loop for setting in (option-values :knob options)
+  (check-set-once (loop for setting in (option-values :knob options)
                         collect (knob-setting setting testbed))))
-    (loop for ((knob) . others) on settings
-          do (when (assoc knob others)
-               (reject-usage "--knob ~(~A~) was given twice. Give it once." knob)))
-    settings))
 
 ;;; Running agents.
 
 (defun progress-stream (options)
   (and (not (option-value :quiet options)) *error-output*))
 
-(defun default-out (testbed options)
-  (format nil "out/~(~A~)~:[~;-tuning~]/" (testbed-name testbed) (option-value :tuning options)))
+(defun default-out (testbed knobs options)
+  "Return the directory for the table of TESTBED with KNOBS, lists (knob value)."
+  (format nil "out/~(~A~)~@[-~A~]~:[~;-tuning~]/" (testbed-name testbed)
+          (and knobs (remove #\* (substitute-if #\- (lambda (char) (find char " /"))
+                                               (settings-text knobs))))
+          (option-value :tuning options)))
 
 (defun prompt-command-line (options)
   "Return the shell's line that starts the prompt with the files of --load in OPTIONS."
@@ -145,7 +163,7 @@ are no agents of other testbeds."
   "Run AGENTS in TESTBED by OPTIONS. Print their scores and, of several, the differences. Return the
 exit status."
   (let* ((knobs (knob-settings testbed options))
-         (out (option-value :out options (default-out testbed options)))
+         (out (option-value :out options (default-out testbed knobs options)))
          (results (run-testbed (testbed-name testbed)
                                :agents agents :knobs knobs
                                :seeds (option-value :seeds options 100)
@@ -172,10 +190,19 @@ exit status."
   "Return the agents to run: those of the options; after --load, also those of TESTBED."
   (let ((agents (loop for name in (option-values :agent options)
                       collect (agent-named name testbed))))
-    (remove-duplicates (append agents
-                               (when (or (null agents) (option-values :load options))
-                                 (mapcar #'first (testbed-agents testbed))))
-                       :from-end t)))
+    (check-names-differ
+     (remove-duplicates (append agents
+                                (when (or (null agents) (option-values :load options))
+                                  (mapcar #'first (testbed-agents testbed))))
+                        :from-end t))))
+
+(defun check-names-differ (agents)
+  "Return AGENTS. Signal BAD-LINE if two have one name, by which tables know them."
+  (loop for (agent . others) on agents
+        do (when (member agent others :test #'string=)
+             (reject-line "Two agents are called ~(~A~), so a table cannot tell them apart. Rename ~
+                           one." agent)))
+  agents)
 
 (defun run-one-testbed (testbed options)
   (cond ((set-difference (mapcar #'first options) '(:load :other))
@@ -203,10 +230,11 @@ exit status."
     (load-files-before-prompt (option-values :load options))
     (call-reporting-interruption
      (lambda ()
-       (let ((testbed (and words (testbed-named (first words)))))
-         (cond ((option-value :all options)
-                (save-pages (if testbed (list testbed) (all-testbeds)) options))
-               (testbed (run-one-testbed testbed options))
-               (t (write-testbed-list *standard-output*)
-                  0))))
+       (handler-bind ((bad-line (lambda (line) (reject-usage "~A" (bad-line-text line)))))
+         (let ((testbed (and words (testbed-named (first words)))))
+           (cond ((option-value :all options)
+                  (save-pages (if testbed (list testbed) (all-testbeds)) options))
+                 (testbed (run-one-testbed testbed options))
+                 (t (write-testbed-list *standard-output*)
+                    0)))))
      "testbed" arguments options)))

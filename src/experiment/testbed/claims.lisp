@@ -119,6 +119,7 @@ property lists, one for each relation under each list of settings:
                                       how many are needed; else NIL
 CLAIMS is a list of the numbers of claims to check, from 1. Signals UNKNOWN-NAME, WRONG-ARGUMENT,
 and MISUSE if an agent has an error."
+  (check-argument check-claims seeds (and (integerp seeds) (plusp seeds)) "a positive integer")
   (let* ((testbed (find-testbed name))
          (claims (selected-claims testbed claims))
          (games (make-games testbed workers)))

@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
+(export '(settings-text))
+
 ;;; A claim is a list (text settings relation...), perhaps with a part (:measure name) or (:measure
 ;;; name :less) among the relations. A game is a list (agent setting...): an agent, and the settings
 ;;; of knobs that it plays under, of which the last for a knob counts.
@@ -87,9 +89,11 @@ two gaps. SCORES-OF returns the scores of a game."
 ;;; As text.
 
 (defun settings-text (settings)
+  "Return the text of SETTINGS, lists (knob value)."
   (format nil "~{~A~^ ~}"
           (loop for (name value) in settings
-                collect (format nil "~(~A~)=~A" name (value-text value)))))
+                collect (format nil "~(~A~)=~A" name
+                                (if (eq :none value) "none" (value-text value))))))
 
 (defun side-text (side)
   (if (consp side)

@@ -15,6 +15,18 @@ Return nothing. Signals UNKNOWN-NAME."
         (t (reject-name "agent" agent '())))
   (values))
 
+(defun call-with-fixed-knobs (knobs function)
+  "Return the values of FUNCTION, which plays a game. Signal MISUSE if one of KNOBS, parameters, has
+another value then: tables would say what the game was not."
+  (let ((before (mapcar #'symbol-value knobs)))
+    (multiple-value-prog1 (funcall function)
+      (loop for knob in knobs
+            for old in before
+            do (unless (eql old (symbol-value knob))
+                 (reject-use "The agent set ~(~A~), a knob of the game, from ~A to ~A. Agents play ~
+                              with the knobs as they are."
+                             knob old (symbol-value knob)))))))
+
 (defun resolve-agent (testbed name)
   "Return the agent NAME: a plan or function of that very name, or else an agent of TESTBED."
   (let ((names (mapcar #'first (testbed-agents testbed))))
@@ -28,9 +40,7 @@ Return nothing. Signals UNKNOWN-NAME."
     (reject-argument 'run-testbed 'knobs setting "lists (knob value)"))
   (let ((knob (or (find (first setting) (testbed-knobs testbed) :test #'same-name-p)
                   (reject-name "knob" (first setting) (testbed-knobs testbed)))))
-    ;; A later testbed may have defined a parameter of the same name.
-    (let ((parameter (parameter-of-variable knob)))
-      (when parameter (check-parameter-value parameter (second setting))))
+    (check-parameter-value (parameter-of-variable knob) (second setting))
     (list knob (second setting))))
 
 (defun resolve-knobs (testbed settings)
@@ -63,7 +73,8 @@ WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
 (defun run-experiment-object (experiment seeds workers directory stream &optional time-limit)
   "Register EXPERIMENT, so that failed trials can be listed, and run it. Return the results."
   (register *experiments* (experiment-name experiment) experiment)
-  (apply #'run-experiment (experiment-name experiment)
+  ;; Not by its name: other threads may run the same testbed.
+  (apply #'run-experiment experiment
          :trials seeds :workers workers :directory directory :stream stream
          (and time-limit (list :time-limit time-limit))))
 

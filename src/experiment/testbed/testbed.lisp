@@ -80,6 +80,14 @@
       (unless (relation-p part agents)
         (reject-clause definition part *relation-syntax*)))))
 
+(defun check-distinct (definition names)
+  (unless (= (length names) (length (remove-duplicates names)))
+    (reject-clause definition names "each name once")))
+
+(defun check-settings (definition settings)
+  "Signal MALFORMED-DEFINITION if SETTINGS name a knob twice."
+  (check-distinct definition (mapcar #'first settings)))
+
 (defun check-knobs-known (definition clauses)
   "Signal MALFORMED-DEFINITION if claims or sweeps of CLAUSES name what is no knob."
   (let ((knobs (testbed-clause :knobs clauses)))
@@ -92,6 +100,7 @@
         (dolist (part sweep) (check (first part) sweep)))
       (dolist (claim (testbed-clause :claims clauses))
         (dolist (settings (second claim))
+          (check-settings definition settings)
           (dolist (setting settings) (check (first setting) settings)))
         (dolist (part (cddr claim))
           (dolist (name (knobs-in-relation part)) (check name part)))))))
@@ -107,6 +116,11 @@
   (loop for key in '(:rules :agents :score :seeds)
         do (unless (testbed-clause key clauses)
              (reject-clause definition (list key) (second (assoc key *testbed-clauses*)))))
+  (check-distinct definition (testbed-clause :knobs clauses))
+  (check-distinct definition (mapcar #'first (testbed-clause :agents clauses)))
+  (destructuring-bind (&key tuning testing) (testbed-clause :seeds clauses)
+    (when (eql tuning testing)
+      (reject-clause definition (testbed-clause :seeds clauses) "different seeds for tuning")))
   (check-claim-parts definition (testbed-clause :claims clauses)
                      (mapcar #'first (testbed-clause :agents clauses)))
   (check-knobs-known definition clauses))
@@ -114,13 +128,21 @@
 (defun own-testbed-clause-p (clause)
   (and (consp clause) (assoc (first clause) *testbed-clauses*)))
 
+(defun with-fixed-knobs (knobs clauses)
+  "Return CLAUSES, with a clause :run in which the agent must not set KNOBS."
+  (loop for clause in clauses
+        collect (if (and (consp clause) (eq :run (first clause)) (rest clause) knobs)
+                    `(:run (call-with-fixed-knobs ',knobs (lambda () ,@(rest clause))))
+                    clause)))
+
 (defun experiment-clauses-of-testbed (clauses)
   "Return the clauses of the experiment on the agents of a testbed with CLAUSES."
   (list* `(:vary (,(intern "AGENT") ,@(loop for (name) in (testbed-clause :agents clauses)
                                            collect `',name)))
          `(:seed ,(getf (testbed-clause :seeds clauses) :testing))
          (let* ((score (first (testbed-clause :score clauses)))
-                (others (remove-if #'own-testbed-clause-p clauses))
+                (others (with-fixed-knobs (testbed-clause :knobs clauses)
+                                          (remove-if #'own-testbed-clause-p clauses)))
                 (measures (find :measure others :key #'first)))
            (cons `(:measure ,score ,@(rest measures)) (remove measures others)))))
 
@@ -188,9 +210,12 @@ Signals MALFORMED-DEFINITION."
                                            form))))))))
 
 (defun check-knob-name (definition name)
-  "Signal MALFORMED-DEFINITION if a parameter has the name of NAME, but is another symbol."
+  "Signal MALFORMED-DEFINITION if a parameter has the name of NAME, but is another symbol or one of
+another package."
   (let* ((known (find-parameter name nil)) (symbol (and known (parameter-symbol known))))
-    (when (and symbol (not (eq name symbol)) (symbol-package symbol))
+    (when (and symbol
+               (symbol-package symbol)
+               (not (and (eq name symbol) (eq *package* (symbol-package symbol)))))
       (reject-clause definition name
                      (format nil "another name: ~(~S~) is a parameter, and parameters are found by ~
                                   their names without packages" symbol)))))
