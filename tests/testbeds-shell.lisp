@@ -68,6 +68,15 @@
 
 ;;; Claims.
 
+(test claims.tell-their-relations
+  (flet ((text (&rest relation) (experiment::relation-text relation nil)))
+    (is (equal "a - b, at least 0" (text :better 'a 'b 0)))
+    (is (equal "a - b, at least 0.5" (text :better 'a 'b 0.5)))
+    (is (equal "a - b, within 2" (text :within 'a 'b 2)))
+    (is (equal "a - b, interval above -2" (text :not-worse 'a 'b 2)))
+    (is (equal "a - b, at most -2" (experiment::relation-text '(:better a b 2) t)))
+    (is (equal "a - b, at most 0" (experiment::relation-text '(:better a b 0) t)))))
+
 (test claims.need-enough-seeds
   "With 7 seeds no p is as low as .01."
   (with-race ((:score ars-test-race:metres)

@@ -105,8 +105,8 @@ two gaps. SCORES-OF returns the scores of a game."
   (destructuring-bind (kind a b more) relation
     (let ((gap (format nil "~A - ~A" (side-text a) (side-text b))))
       (ecase kind
-        (:better (format nil "~A, ~:[at least ~;at most ~:[-~;~]~]~A" gap less
-                         (eql 0 more) (value-text more)))
+        (:better (format nil "~A, ~:[at least~;at most~] ~A" gap less
+                         (value-text (if less (- more) more))))
         (:within (format nil "~A, within ~A" gap (value-text more)))
         (:not-worse (format nil "~A, interval ~:[above -~;below ~]~A" gap less (value-text more)))
         (:narrows (format nil "(~A) from ~(~A~) ~A to ~A" gap (first more)
