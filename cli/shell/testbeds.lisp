@@ -187,13 +187,16 @@ exit status."
              0))))
 
 (defun agents-from-options (testbed options)
-  "Return the agents to run: those of the options; after --load, also those of TESTBED."
+  "Return the agents to run: those of the options; after --load, also those of TESTBED, unless one
+of these is named."
   (let ((agents (loop for name in (option-values :agent options)
-                      collect (agent-named name testbed))))
+                      collect (agent-named name testbed)))
+        (shipped (testbed-agents testbed)))
     (check-names-differ
      (remove-duplicates (append agents
-                                (when (or (null agents) (option-values :load options))
-                                  (mapcar #'first (testbed-agents testbed))))
+                                (when (notany (lambda (agent) (assoc agent shipped)) agents)
+                                  (and (or (null agents) (option-values :load options))
+                                       (mapcar #'first shipped))))
                         :from-end t))))
 
 (defun check-names-differ (agents)
