@@ -98,7 +98,7 @@ other functions, constants and closed-over values. Numbers, characters and strin
 is true if it is not known."
   (let ((list (and (closure-p name) (declared-lambda-list name))))
     ;; Continuations are closures, and are checked whenever a command is issued.
-    (if (typep list 'cons)
+    (if (and (consp list) (notany (lambda (element) (member element lambda-list-keywords)) list))
         list
         (sb-introspect:function-lambda-list name))))
 
