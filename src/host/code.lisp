@@ -112,8 +112,9 @@ is true if it is not known."
 
 (defun callable-with-count-p (function count)
   "True if FUNCTION, a function or a name, accepts COUNT arguments or has an unknown lambda list."
-  (multiple-value-bind (list unknown-p) (lambda-list-of function)
-    (or unknown-p (accepts-count-p list count))))
+  (unless (and (symbolp function) (or (macro-function function) (special-operator-p function)))
+    (multiple-value-bind (list unknown-p) (lambda-list-of function)
+      (or unknown-p (accepts-count-p list count)))))
 
 ;;; The source files of functions. SBCL does not know the file of forms that are evaluated singly.
 
