@@ -270,6 +270,15 @@
                  (:file "menus") (:file "opening")
                  (:file "x-server") (:file "following")))))
 
+(defsystem "ars-magna/rap"
+  :description "Reactive action packages on the plan language."
+  :depends-on ("ars-magna")
+  :serial t
+  :components
+  ((:module "rpl/rap" :serial t
+    :components ((:file "package") (:file "memory") (:file "queries") (:file "reading")
+                 (:file "task-nets") (:file "define-rap") (:file "agenda")))))
+
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."
   :depends-on ("ars-magna" "fiveam")

@@ -1,0 +1,216 @@
+;;;; define-rap.lisp -- DEFINE-RAP: a plan that tries methods until its success test holds.
+
+(in-package :ars-rap)
+
+;;; A RAP is a plan procedure of the name of its index. So steps of task nets are calls of plans,
+;;; and any plan can be a step.
+
+(define-condition rap-failed (plan-failure)
+  ((name :initarg :name :initform nil :reader rap-failed-name)
+   (tries :initarg :tries :initform '() :reader rap-failed-tries))
+  (:documentation "A RAP has no method left to try."))
+
+(setf (documentation 'rap-failed-name 'function)
+      "Return the name of the RAP that failed."
+      (documentation 'rap-failed-tries 'function)
+      "Return a list of what the RAP tried, the newest first: lists (method values text). METHOD is the
+name of the method, VALUES those of its variables, TEXT why the try did not help.")
+
+(defmethod write-failure ((failure rap-failed) stream)
+  (format stream "~(~A~): ~:[no method is applicable~;~:*~{~A~^; ~}~]"
+          (rap-failed-name failure)
+          (loop for (method values text) in (reverse (rap-failed-tries failure))
+                collect (format nil "~A: ~A" (data-text (cons method values)) text))))
+
+(defparameter *net-tries* 3
+  "How often a step is repeated whose annotation (fact for step) does not hold.")
+
+(define-task-variable goal-priority* 0
+  "The priority with which the RAPs of a goal take their resources: a number. INSTALL-GOAL sets it.")
+
+(define-task-variable resources* nil
+  "The valves of the resources that tasks share: a list whose rest is an alist by name, or NIL.")
+
+;;; What the plan text of RAPs calls.
+
+(defun holds-p (query) (and (solve query '()) t))
+
+(defun over-p (task)
+  (member (fluent-value (task-status task)) '(:succeeded :failed :evaporated)))
+
+(defun fail-by-event (query)
+  (fail :class :rap-event :event query))
+
+(defun check-happened (true query)
+  (unless true (fail :class :rap-condition :condition query)))
+
+(defun resource-valve (name)
+  "Return the valve of the resource NAME, in the plan of the calling task."
+  (let ((table (or resources* (reject-use "A resource can only be used in a RAP or WITH-RESOURCES."))))
+    (cdr (or (assoc name (rest table) :test #'value-equal)
+             (first (push (cons name (make-valve name)) (rest table)))))))
+
+(defun tries-of (candidate tries)
+  (count candidate tries :test #'value-equal
+                         :key (lambda (try) (list (first try) (second try)))))
+
+(defun choose-method (methods tries limit)
+  "Return a candidate, (method values), with the fewest TRIES: the first among equals. Return NIL if
+all that apply were tried LIMIT times. METHODS are lists (name query variable...)."
+  (let ((best nil) (fewest limit))
+    (loop for (name query . variables) in methods
+          do (dolist (bindings (if query (solve query '()) (list '())))
+               (let* ((candidate (list name (instance variables bindings)))
+                      (count (tries-of candidate tries)))
+                 (when (< count fewest) (setf best candidate fewest count)))))
+    best))
+
+(defun failure-of-method (failure)
+  "Return a text about FAILURE, of a method. An error of Lisp is no failure of a method: fail again."
+  (if (typep failure 'lisp-failure)
+      (fail failure)
+      (failure-text failure)))
+
+;;; The plan text.
+
+(defun method-row-code (method known)
+  (let ((context (rap-method-context method)))
+    `(list ',(rap-method-name method)
+           ,(and context (query-code context known))
+           ,@(loop for variable in (rap-method-variables method)
+                   collect `',(find variable (marked-variables context) :key #'code-variable)))))
+
+(defun with-resources-code (resources body)
+  (if resources
+      `(with-valves (,@(loop for resource in resources
+                             collect `(resource-valve ,(if (variable-p resource)
+                                                           (variable-of resource)
+                                                           `',resource)))
+                     :priority goal-priority*)
+         ,@body)
+      `(seq ,@body)))
+
+(defun method-code (method results)
+  "Return a clause of CASE that runs METHOD with the values in the variable CHOSEN. Variables that are
+RESULTS of the RAP are around."
+  (let ((body (with-resources-code (rap-method-resources method) (rap-method-body method)))
+        (variables (rap-method-variables method)))
+    `(,(rap-method-name method)
+      (let ,(loop for variable in (set-difference variables results)
+                  collect `(,variable (nth ,(position variable variables) chosen)))
+        ,@(loop for variable in (intersection variables results)
+                collect `(setf ,variable (nth ,(position variable variables) chosen)))
+        ,body))))
+
+(defun results-code (succeed results known)
+  "Return forms that give RESULTS, Lisp variables, their values from the success test SUCCEED."
+  (let ((marked (marked-variables succeed)))
+    (when (and succeed results)
+      `((destructuring-bind (&optional ,@results)
+            (first (memory-instances
+                    (list ,@(loop for variable in results
+                                  collect `',(find variable marked :key #'code-variable)))
+                    ,(query-code succeed known)))
+          (list ,@results))))))
+
+(defun loop-code (name methods succeed results known limit)
+  "Return plan text that tries METHODS until SUCCEED, a query or NIL, holds."
+  `(prog ((tries '()) (choice nil) (chosen '()))
+    again
+      ,@(when succeed `((when (holds-p ,(query-code succeed known)) (return))))
+      (setf choice (choose-method (list ,@(loop for method in methods
+                                                collect (method-row-code method known)))
+                                  tries ,limit)
+            chosen (second choice))
+      (unless choice (fail (make-condition 'rap-failed :name ',name :tries tries)))
+      (push (append choice
+                    (list (handle-failure ((t (failure) (return (failure-of-method failure))))
+                            (case (first choice)
+                              ,@(loop for method in methods
+                                      collect (method-code method results)))
+                            ,(if succeed "its success test does not hold" :done))))
+            tries)
+      ,@(unless succeed '((when (eq :done (third (first tries))) (return))))
+      (go again)))
+
+(defun rap-code (index documentation clauses)
+  (multiple-value-bind (call results) (split-result index)
+    (let* ((known (mapcar #'variable-of (rest call)))
+           (methods (loop for clause in (clauses-named 'method clauses)
+                          for number from 1
+                          collect (parse-method clause number known results)))
+           (succeed (query-clause 'succeed clauses)))
+      (check-results results succeed)
+      `(def-interp-proc ,(first call) ,known
+         ,@(and documentation (list documentation))
+         (let ,results
+           (declare (ignorable ,@known))
+           (with-task-variables ((resources* (or resources* (list :resources))))
+             ,(with-resources-code
+               (only-clause 'resources clauses)
+               (list (loop-code (first call) methods succeed results known
+                                (attempts-of clauses)))))
+           ,@(results-code results succeed known))))))
+
+(defun check-results (results succeed)
+  (when succeed
+    (let ((missing (set-difference results (code-variables succeed))))
+      (when missing
+        (reject-part succeed (format nil "a query with the result~P ~{?~(~A~)~^, ~}"
+                                     (length missing) missing))))))
+
+(defun attempts-of (clauses)
+  (let ((clause (first (clauses-named 'attempts clauses))))
+    (unless (typep clause '(or null (cons t (cons (integer 1) null))))
+      (reject-part clause "(attempts n), with a positive integer"))
+    (if clause (second clause) 2)))
+
+(defun check-index (index)
+  (unless (and (proper-list-p index) (first index) (symbolp (first index))
+               (every #'variable-p (rest (split-result index)))
+               (notany #'anonymous-p (rest (split-result index))))
+    (reject-part index "an index (name ?argument... [=> ?result...])"))
+  (let ((variables (remove-if-not #'variable-p (rest index))))
+    (unless (= (length variables) (length (code-variables variables)))
+      (reject-part index "different variables"))))
+
+(defmacro define-rap (&body clauses)
+  "Define a RAP, a reactive action package: a plan procedure that tries methods until its success
+test holds. A string may precede the clauses. They are
+  (index (name ?argument... [=> ?result...]))   the name of the plan, its arguments and its values
+  (succeed query)          the success test; see MEMORY-QUERY. A RAP without it succeeds when a
+                           method succeeds
+  (attempts n)             how often a method is tried with the same values; by default 2
+  (resources name...)      what the RAP needs for itself; see WITH-RESOURCES
+  (method [name] (context query) (resources name...) (task-net step...))
+  (method [name] (context query) (resources name...) (primitive form...))
+If the success test holds, the RAP succeeds. Otherwise it runs one method and tests again. It chooses
+among the methods whose context holds, with each way of giving values to its variables, one that it
+has tried least, and among equals the first. It fails with RAP-FAILED when there is none that it has
+tried fewer than N times. An error of Lisp ends the RAP.
+A query may also contain (test form). FORM, and the forms of a primitive, are Lisp and plan text, in
+which ?x can be written x. A step of a task net is
+  (tag (plan argument... [=> ?result...]) annotation...), (sequence step...) or (parallel step...)
+PLAN is a RAP or another plan. Steps run at the same time unless sequences and annotations order
+them:
+  (for tag)                the step comes before the step TAG
+  (fact for tag)           so it does; if the query FACT does not hold then, it is repeated
+  (wait-for query tag)     the step TAG waits for QUERY, while this step goes on
+  (wait-for query :succeed), (wait-for query :fail)   QUERY ends this step
+  (until-start tag), (until-end tag)   the start or end of the step TAG ends this step
+Return the name. Signals MALFORMED-DEFINITION. (From RAP, after Firby 1989 and 1995.)"
+  (let* ((documentation (and (stringp (first clauses)) (first clauses)))
+         (clauses (if documentation (rest clauses) clauses))
+         (index (find-if (lambda (clause) (and (consp clause) (symbolp (first clause))
+                                               (string= 'index (first clause))))
+                         clauses))
+         (*rap-title* (definition-title "define-rap" (and (consp (rest index))
+                                                          (consp (second index))
+                                                          (first (second index))))))
+    (check-clause-names clauses '(index succeed attempts resources method))
+    (unless (typep index '(cons t (cons cons null)))
+      (reject-part index "a clause (index (name ?argument...))"))
+    (check-index (second index))
+    (unless (clauses-named 'method clauses)
+      (reject-part index "at least one clause (method ...)"))
+    (rap-code (second index) documentation clauses)))

@@ -1,0 +1,19 @@
+;;;; package.lisp -- reactive action packages (RAPs) on the plan language.
+
+(ars:define-user-package :ars-rap
+  (:documentation "Reactive action packages after Firby: tasks that repeat methods until their
+success test holds, a memory of facts with rules, and an agenda of goals with priorities and
+deadlines. Use this package together with ARS and NISP.")
+  (:import-from :ars-magna.basics #:reject-argument #:reject-use #:value-equal #:safe-text
+                #:proper-list-p #:starts-with-subseq #:define-record)
+  (:import-from :ars-magna.definitions #:reject-clause #:definition-title #:define-registry
+                #:register)
+  (:import-from :ars-magna.rpl.language #:variable-of)
+  (:import-from :ars-magna.rpl.tasks #:failure-text #:write-failure)
+  (:import-from :ars-magna.nisp #:matchvar-p #:matchvar-name)
+  (:export #:memory-add #:memory-delete #:memory-set #:memory-holds-p #:memory-query #:memory-tick
+           #:main-memory* #:dump-memory #:reset-memory #:define-memory-rule
+           #:define-rap #:rap-failed #:rap-failed-name #:rap-failed-tries #:goal-priority*
+           #:with-resources
+           #:install-goal #:remove-goal #:execute-goal #:process-goal-agenda #:work-on-agenda
+           #:main-agenda* #:agenda-goals #:dump-agenda #:reset-agenda))
