@@ -102,16 +102,17 @@ RESULTS of the RAP are around."
                 collect `(setf ,variable (nth ,(position variable variables) chosen)))
         ,body))))
 
-(defun results-code (succeed results known)
-  "Return forms that give RESULTS, Lisp variables, their values from the success test SUCCEED."
-  (let ((marked (marked-variables succeed)))
-    (when (and succeed results)
-      `((destructuring-bind (&optional ,@results)
-            (first (memory-instances
-                    (list ,@(loop for variable in results
-                                  collect `',(find variable marked :key #'code-variable)))
-                    ,(query-code succeed known)))
-          (list ,@results))))))
+(defun value-code (succeed results known)
+  "Return a form for the values of a RAP that has succeeded: T, or those of RESULTS, Lisp variables."
+  (cond ((null results) t)
+        (succeed
+         (let ((marked (marked-variables succeed)))
+           `(values-list (first (memory-instances
+                                 (list ,@(loop for variable in results
+                                               collect `',(find variable marked
+                                                                :key #'code-variable)))
+                                 ,(query-code succeed known))))))
+        (t `(values ,@results))))
 
 (defun loop-code (name methods succeed results known limit)
   "Return plan text that tries METHODS until SUCCEED, a query or NIL, holds."
@@ -150,7 +151,7 @@ RESULTS of the RAP are around."
                (only-clause 'resources clauses)
                (list (loop-code (first call) methods succeed results known
                                 (attempts-of clauses)))))
-           ,@(results-code results succeed known))))))
+           ,(value-code succeed results known))))))
 
 (defun check-results (results succeed)
   (when succeed
@@ -204,9 +205,9 @@ Return the name. Signals MALFORMED-DEFINITION. (From RAP, after Firby 1989 and 1
          (index (find-if (lambda (clause) (and (consp clause) (symbolp (first clause))
                                                (string= 'index (first clause))))
                          clauses))
-         (*rap-title* (definition-title "define-rap" (and (consp (rest index))
-                                                          (consp (second index))
-                                                          (first (second index))))))
+         (*rap-title* (if (typep index '(cons t (cons cons)))
+                          (definition-title "define-rap" (first (second index)))
+                          "define-rap")))
     (check-clause-names clauses '(index succeed attempts resources method))
     (unless (typep index '(cons t (cons cons null)))
       (reject-part index "a clause (index (name ?argument...))"))

@@ -16,7 +16,8 @@
 
 (defparameter *rule-depth-limit* 100 "How deeply rules may use each other.")
 
-(defvar *rule-depth* 0 "How many rules this thread applies inside each other.")
+(defvar *rules-in-use* '()
+  "What this thread is finding out by rules, innermost first: lists (rule pattern).")
 
 (defun solve (query bindings)
   "Return a list of the extensions of BINDINGS for which QUERY holds."
@@ -62,19 +63,32 @@ facts that follow by rules."
         ((and (variable-p head) (not (ground-p pattern))) bindings)
         (t (match head pattern bindings))))
 
+(defun generalized (pattern)
+  "Return PATTERN with ? in place of its variables."
+  (cond ((variable-p pattern) '?)
+        ((consp pattern) (cons (generalized (car pattern)) (generalized (cdr pattern))))
+        (t pattern)))
+
+;;; While the facts of a pattern are found out by a rule, the rule gives no facts for the same
+;;; pattern again. So rules about circular relations come to an end.
+
 (defun facts-by-rule (rule pattern)
   "Return the facts that follow by RULE and may match PATTERN."
-  (let ((bindings (bind-head (memory-rule-head rule) pattern '())))
-    (unless (eq :fail bindings)
-      (when (< *rule-depth-limit* *rule-depth*)
+  (let ((bindings (bind-head (memory-rule-head rule) pattern '()))
+        (use (list rule (generalized pattern))))
+    (unless (or (eq :fail bindings) (member use *rules-in-use* :test #'value-equal))
+      (when (< *rule-depth-limit* (length *rules-in-use*))
         (reject-use "The memory rule ~(~A~) uses itself without end." (memory-rule-name rule)))
-      (let ((*rule-depth* (1+ *rule-depth*)))
+      (let ((*rules-in-use* (cons use *rules-in-use*)))
         (loop for solution in (solve (memory-rule-query rule) bindings)
-              for fact = (instance (memory-rule-head rule) solution)
-              do (unless (ground-p fact)
-                   (reject-use "The memory rule ~(~A~) gives ~A, in which a variable has no value."
-                               (memory-rule-name rule) (data-text fact)))
-              collect fact)))))
+              collect (fact-of-rule rule solution))))))
+
+(defun fact-of-rule (rule bindings)
+  (let ((fact (instance (memory-rule-head rule) bindings)))
+    (unless (ground-p fact)
+      (reject-use "The memory rule ~(~A~) gives ~A, in which a variable has no value."
+                  (memory-rule-name rule) (data-text fact)))
+    fact))
 
 (defun solve-comparison (query bindings)
   (destructuring-bind (operator a b) (instance query bindings)

@@ -36,8 +36,7 @@
                                  (wait-for query :succeed), (wait-for query :fail), (until-start ~
                                  tag) or (until-end tag)")))
     (multiple-value-bind (call results) (split-result call)
-      (make-net-step :tag tag :call (cons (first call) (code-with-variables (rest call)))
-                     :results results :annotations annotations))))
+      (make-net-step :tag tag :call call :results results :annotations annotations))))
 
 (defun group-p (form)
   "Return the first word of FORM if it is (sequence step...) or (parallel step...), else NIL."
@@ -88,13 +87,22 @@
 
 (defun begin-variable (tag) (intern (format nil "~A-BEGINS" tag)))
 
-(defun call-code (step)
-  (if (net-step-results step)
-      (let ((values (loop for variable in (net-step-results step)
-                          collect (gensym (symbol-name variable)))))
-        `(multiple-value-bind ,values ,(net-step-call step)
-           (setf ,@(mapcan #'list (copy-list (net-step-results step)) values))))
-      (net-step-call step)))
+(defun call-code (step known)
+  "Return the plan call of STEP. Its arguments are data, in which the Lisp variables KNOWN have values."
+  (destructuring-bind (name . arguments) (net-step-call step)
+    (dolist (argument (set-difference (code-variables arguments) known))
+      (reject-part (net-step-call step)
+                   (format nil "no ?~(~A~), which has no value: the index, the context or the result ~
+                                of a step must give it one"
+                           argument)))
+    (let ((call (cons name (loop for argument in arguments
+                                 collect (pattern-code argument known))))
+          (results (net-step-results step)))
+      (if results
+          (let ((values (loop for variable in results collect (gensym (symbol-name variable)))))
+            `(multiple-value-bind ,values ,call
+               (setf ,@(mapcan #'list (copy-list results) values))))
+          call))))
 
 (defun watched-code (step known)
   "Return the call of STEP, which also ends when its annotations say so."
@@ -111,7 +119,7 @@
                                                             ',(second annotation))))))))
                              (:until-start (list `(wait-for ,(begin-variable tag))))
                              (:until-end (list `(wait-until (over-p ,tag))))))))
-    (if ends `(pursue ,(call-code step) ,@ends) (call-code step))))
+    (if ends `(pursue ,(call-code step known) ,@ends) (call-code step known))))
 
 (defun conditions-code (step steps known)
   "Return plan text that waits for what other STEPS make true for STEP."
@@ -122,7 +130,7 @@
                                  (:fact
                                   (let ((query (query-code (first annotation) known)))
                                     `(seq (n-times *net-tries* until (holds-p ,query)
-                                            ,(call-code other))
+                                            ,(call-code other known))
                                           (check-happened (holds-p ,query)
                                                           ',(first annotation)))))
                                  (:wait-for
