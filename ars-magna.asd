@@ -319,7 +319,7 @@
 (defsystem "ars-magna/tests"
   :description "All that ARS MAGNA claims."
   :depends-on ("ars-magna" "ars-magna/worlds" "ars-magna/figures" "ars-magna/cli"
-               "ars-magna/manual" "ars-magna/fiveam" "fiveam")
+               "ars-magna/manual" "ars-magna/fiveam" "ars-magna/rap" "fiveam")
   :serial t
   :components
   ((:module "tests" :serial t
@@ -442,6 +442,7 @@
                  (:file "thinking-experiments") (:file "tileworld-bare") (:file "testbeds")
                  (:file "pursuit-bare") (:file "testbeds-pursuit")
                  (:file "testbeds-tiles") (:file "testbeds-agents") (:file "testbeds-shell")
+                 (:file "rap") (:file "rap-random")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

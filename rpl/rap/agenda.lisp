@@ -27,8 +27,8 @@ oldest first. See AGENDA-GOALS.")
 (defun install-goal (goal &optional (priority 0) deadline)
   "Put GOAL, a list (name argument...) with the name of a RAP or another plan, on the agenda of the
 current run. PRIORITY is a number, greater for what is more urgent. The goal fails if it is not
-achieved by the tick DEADLINE, unless that is NIL. Return the number of the goal. Arguments are plain
-data, or things and robots of the run. Signals WRONG-ARGUMENT. (From RAP.)"
+achieved by the tick DEADLINE, unless that is NIL. Return the number of the goal. Arguments are
+plain data, or things and robots of the run. Signals WRONG-ARGUMENT. (From RAP.)"
   (check-goal 'install-goal goal priority deadline)
   (let ((number (incf goals-installed*)))
     (setf main-agenda*
@@ -111,8 +111,9 @@ row of the agenda, and mark it as active. Return NIL if none waits."
 
 (def-interp-proc work-on-agenda (&key (at-once 8))
   "Work on the goals of the agenda of the current run until none is waiting or active, also on goals
-that are installed meanwhile. Work on at most AT-ONCE goals at the same time: first on the goals with
-the highest priority, and among equals the earliest deadline. Return the number of goals achieved."
+that are installed meanwhile. Work on at most AT-ONCE goals at the same time: first on the goals
+with the highest priority, and among equals the earliest deadline. Return the number of goals
+achieved."
   (let ((changed (state 'agenda-changed)) (achieved 0))
     (with-task-variables ((resources* (or resources* (list :resources))))
       (pursue
@@ -130,13 +131,13 @@ the highest priority, and among equals the earliest deadline. Return the number 
     achieved))
 
 (defun process-goal-agenda ()
-  "Work on the goals of the agenda of the current run, by the plan WORK-ON-AGENDA, until none is left.
-Return the number of goals achieved. In a plan, call WORK-ON-AGENDA. (From RAP.)"
+  "Work on the goals of the agenda of the current run, by the plan WORK-ON-AGENDA, until none is
+left. Return the number of goals achieved. In a plan, call WORK-ON-AGENDA. (From RAP.)"
   (run-plan 'work-on-agenda))
 
 (defun execute-goal (goal &optional (priority 0) deadline)
-  "Work on GOAL only, as INSTALL-GOAL and PROCESS-GOAL-AGENDA do. Return true if it is achieved. Signals
-WRONG-ARGUMENT. (From RAP.)"
+  "Work on GOAL only, as INSTALL-GOAL and PROCESS-GOAL-AGENDA do. Return true if it is achieved.
+Signals WRONG-ARGUMENT. (From RAP.)"
   (let ((number (install-goal goal priority deadline)))
     (set-goal-state number :active)
     (and (eq t (run-plan 'pursue-goal (assoc number main-agenda*))) t)))

@@ -13,8 +13,8 @@
 (setf (documentation 'rap-failed-name 'function)
       "Return the name of the RAP that failed."
       (documentation 'rap-failed-tries 'function)
-      "Return a list of what the RAP tried, the newest first: lists (method values text). METHOD is the
-name of the method, VALUES those of its variables, TEXT why the try did not help.")
+      "Return a list of what the RAP tried, the newest first: lists (method values text). METHOD is
+the name of the method, VALUES those of its variables, TEXT why the try did not help.")
 
 (defmethod write-failure ((failure rap-failed) stream)
   (format stream "~(~A~): ~:[no method is applicable~;~:*~{~A~^; ~}~]"
@@ -26,7 +26,8 @@ name of the method, VALUES those of its variables, TEXT why the try did not help
   "How often a step is repeated whose annotation (fact for step) does not hold.")
 
 (define-task-variable goal-priority* 0
-  "The priority with which the RAPs of a goal take their resources: a number. INSTALL-GOAL sets it.")
+  "The priority with which the RAPs of a goal take their resources: a number. INSTALL-GOAL sets
+it.")
 
 (define-task-variable resources* nil
   "The valves of the resources that tasks share: a list whose rest is an alist by name, or NIL.")
@@ -46,7 +47,8 @@ name of the method, VALUES those of its variables, TEXT why the try did not help
 
 (defun resource-valve (name)
   "Return the valve of the resource NAME, in the plan of the calling task."
-  (let ((table (or resources* (reject-use "A resource can only be used in a RAP or WITH-RESOURCES."))))
+  (let ((table (or resources*
+                   (reject-use "A resource can only be used in a RAP or WITH-RESOURCES."))))
     (cdr (or (assoc name (rest table) :test #'value-equal)
              (first (push (cons name (make-valve name)) (rest table)))))))
 
@@ -66,7 +68,8 @@ all that apply were tried LIMIT times. METHODS are lists (name query variable...
     best))
 
 (defun failure-of-method (failure)
-  "Return a text about FAILURE, of a method. An error of Lisp is no failure of a method: fail again."
+  "Return a text about FAILURE, of a method. An error of Lisp is no failure of a method: fail
+again."
   (if (typep failure 'lisp-failure)
       (fail failure)
       (failure-text failure)))
@@ -81,6 +84,7 @@ all that apply were tried LIMIT times. METHODS are lists (name query variable...
                    collect `',(find variable (marked-variables context) :key #'code-variable)))))
 
 (defun with-resources-code (resources body)
+  "Return plan text that runs the forms BODY while their task owns RESOURCES, names or variables."
   (if resources
       `(with-valves (,@(loop for resource in resources
                              collect `(resource-valve ,(if (variable-p resource)
@@ -90,9 +94,25 @@ all that apply were tried LIMIT times. METHODS are lists (name query variable...
          ,@body)
       `(seq ,@body)))
 
+(defun sharing-code (body)
+  "Return plan text that runs the form BODY with a table of resources, shared with the tasks
+around."
+  `(with-task-variables ((resources* (or resources* (list :resources))))
+     ,body))
+
+(def-interp-macro (with-resources ?names . ?forms)
+  "Run FORMS in a plan while their task owns the resources NAMES, symbols that are not evaluated, or
+?x for the value of the variable x. If another task owns one, wait. GOAL-PRIORITY* is the priority:
+a task with a higher priority than the owner's takes the resource, and the owner is suspended
+meanwhile. The parts of FORMS share their resources, and so do the goals of an agenda. Return the
+values of FORMS."
+  (unless (and (proper-list-p names) names (every #'symbolp names))
+    (reject-clause "with-resources" names "a list of names"))
+  (sharing-code (with-resources-code names forms)))
+
 (defun method-code (method results)
-  "Return a clause of CASE that runs METHOD with the values in the variable CHOSEN. Variables that are
-RESULTS of the RAP are around."
+  "Return a clause of CASE that runs METHOD with the values in the variable CHOSEN. Variables that
+are RESULTS of the RAP are around."
   (let ((body (with-resources-code (rap-method-resources method) (rap-method-body method)))
         (variables (rap-method-variables method)))
     `(,(rap-method-name method)
@@ -103,7 +123,8 @@ RESULTS of the RAP are around."
         ,body))))
 
 (defun value-code (succeed results known)
-  "Return a form for the values of a RAP that has succeeded: T, or those of RESULTS, Lisp variables."
+  "Return a form for the values of a RAP that has succeeded: T, or those of RESULTS, Lisp
+variables."
   (cond ((null results) t)
         (succeed
          (let ((marked (marked-variables succeed)))
@@ -146,11 +167,10 @@ RESULTS of the RAP are around."
          ,@(and documentation (list documentation))
          (let ,results
            (declare (ignorable ,@known))
-           (with-task-variables ((resources* (or resources* (list :resources))))
-             ,(with-resources-code
-               (only-clause 'resources clauses)
-               (list (loop-code (first call) methods succeed results known
-                                (attempts-of clauses)))))
+           ,(sharing-code
+             (with-resources-code (only-clause 'resources clauses)
+                                  (list (loop-code (first call) methods succeed results known
+                                                   (attempts-of clauses)))))
            ,(value-code succeed results known))))))
 
 (defun check-results (results succeed)
@@ -185,10 +205,10 @@ test holds. A string may precede the clauses. They are
   (resources name...)      what the RAP needs for itself; see WITH-RESOURCES
   (method [name] (context query) (resources name...) (task-net step...))
   (method [name] (context query) (resources name...) (primitive form...))
-If the success test holds, the RAP succeeds. Otherwise it runs one method and tests again. It chooses
-among the methods whose context holds, with each way of giving values to its variables, one that it
-has tried least, and among equals the first. It fails with RAP-FAILED when there is none that it has
-tried fewer than N times. An error of Lisp ends the RAP.
+If the success test holds, the RAP succeeds. Otherwise it runs one method and tests again. It
+chooses among the methods whose context holds, with each way of giving values to its variables, one
+that it has tried least, and among equals the first. It fails with RAP-FAILED when there is none
+that it has tried fewer than N times. An error of Lisp ends the RAP.
 A query may also contain (test form). FORM, and the forms of a primitive, are Lisp and plan text, in
 which ?x can be written x. A step of a task net is
   (tag (plan argument... [=> ?result...]) annotation...), (sequence step...) or (parallel step...)

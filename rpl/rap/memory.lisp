@@ -26,8 +26,8 @@ which the fact was last added.")
       (string= "?" (symbol-name variable))))
 
 (defun match (pattern object bindings)
-  "Match PATTERN with OBJECT under BINDINGS, a list of conses (variable . value). Return the extended
-bindings, or :FAIL."
+  "Match PATTERN with OBJECT under BINDINGS, a list of conses (variable . value). Return the
+extended bindings, or :FAIL."
   (cond ((variable-p pattern)
          (let ((binding (assoc pattern bindings :test #'eq)))
            (cond ((anonymous-p pattern) bindings)

@@ -103,7 +103,8 @@ facts that follow by rules."
     (= (value-equal a b))
     (/= (not (value-equal a b)))
     (t (unless (and (realp a) (realp b))
-         (reject-use "~(~A~) compares numbers, not ~A and ~A." operator (data-text a) (data-text b)))
+         (reject-use "~(~A~) compares numbers, not ~A and ~A." operator
+                     (data-text a) (data-text b)))
        (funcall operator a b))))
 
 ;;; Checking.
@@ -124,12 +125,13 @@ facts that follow by rules."
       (t (typep query '(cons t (cons t (cons t null))))))))
 
 (defparameter *query-syntax*
-  "a pattern such as (at ?thing depot), (and query...), (or query...), (not query), (= a b), also /= ~
-   < > <= >=, or (within ticks pattern)")
+  (format nil "a pattern such as (at ?thing depot), (and query...), (or query...), (not query), (= a ~
+               b), also /= < > <= >=, or (within ticks pattern)")
+  "What messages say of queries.")
 
 (defun check-query (operator query)
   (unless (query-valid-p query)
-    (reject-argument operator 'query query (format nil *query-syntax*))))
+    (reject-argument operator 'query query *query-syntax*)))
 
 ;;; Asking.
 
@@ -139,8 +141,8 @@ facts that follow by rules."
                      :test #'value-equal :from-end t))
 
 (defun memory-query (template query)
-  "Return a list of instances of TEMPLATE, one for each way in which QUERY holds in the memory of the
-current run, without duplicates: (memory-query '?place '(at truck ?place)). A query is
+  "Return a list of instances of TEMPLATE, one for each way in which QUERY holds in the memory of
+the current run, without duplicates: (memory-query '?place '(at truck ?place)). A query is
   (name part...)           a pattern of facts; ?x matches anything, each time the same; ? anything
   (and query...), (or query...), (not query)
   (= a b)                  equal; gives a variable without a value the value of the other
@@ -164,7 +166,7 @@ MEMORY-QUERY. Rules may use each other. Return NAME. Signals MALFORMED-DEFINITIO
     (unless (pattern-valid-p head)
       (reject-clause definition head "a pattern of facts, such as (near ?a ?b)"))
     (unless (query-valid-p query)
-      (reject-clause definition query (format nil *query-syntax*)))
+      (reject-clause definition query *query-syntax*))
     (unless (typep documentation '(or null string))
       (reject-clause definition documentation "a string"))
     `(progn (register *memory-rules* ',name

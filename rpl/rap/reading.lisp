@@ -36,8 +36,8 @@
         (t `',pattern)))
 
 (defun query-code (query known)
-  "Return a form whose value is QUERY with the values of the Lisp variables KNOWN, and with functions
-in place of the forms of its tests."
+  "Return a form whose value is QUERY with the values of the Lisp variables KNOWN, and with
+functions in place of the forms of its tests."
   (case (query-operator query)
     ((and or not) `(list ',(query-operator query)
                          ,@(loop for part in (rest query) collect (query-code part known))))
@@ -61,13 +61,13 @@ in place of the forms of its tests."
 
 (defun check-rap-query (query)
   (unless (query-valid-p query :tests-too t)
-    (reject-part query (format nil "~A, or (test form)" (format nil *query-syntax*)))))
+    (reject-part query (format nil "~A, or (test form)" *query-syntax*))))
 
 ;;; Clauses.
 
 (defun split-result (index)
-  "Return the index or step INDEX, (name argument... [=> variable...]), without results, and the list
-of the variables of its results."
+  "Return the index or step INDEX, (name argument... [=> variable...]), without results, and the
+list of the variables of its results."
   (let ((arrow (member "=>" index :test (lambda (word part)
                                           (and (symbolp part) (string= word part))))))
     (unless (every (lambda (part) (and (variable-p part) (not (anonymous-p part)))) (rest arrow))
@@ -106,8 +106,8 @@ of the variables of its results."
   (variables '() :read-only t))
 
 (defun parse-method (clause number known results)
-  "Return the method of CLAUSE, (method [name] clause...). KNOWN are the Lisp variables of the index,
-RESULTS those of its results."
+  "Return the method of CLAUSE, (method [name] clause...). KNOWN are the Lisp variables of the
+index, RESULTS those of its results."
   (let* ((name (and (symbolp (second clause)) (second clause)))
          (clauses (nthcdr (if name 2 1) clause)))
     (check-clause-names clauses '(context resources task-net primitive))

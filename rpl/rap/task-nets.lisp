@@ -88,12 +88,13 @@
 (defun begin-variable (tag) (intern (format nil "~A-BEGINS" tag)))
 
 (defun call-code (step known)
-  "Return the plan call of STEP. Its arguments are data, in which the Lisp variables KNOWN have values."
+  "Return the plan call of STEP. Its arguments are data, in which the Lisp variables KNOWN have
+values."
   (destructuring-bind (name . arguments) (net-step-call step)
     (dolist (argument (set-difference (code-variables arguments) known))
       (reject-part (net-step-call step)
-                   (format nil "no ?~(~A~), which has no value: the index, the context or the result ~
-                                of a step must give it one"
+                   (format nil "no ?~(~A~), which has no value: the index, the context or the ~
+                                result of a step must give it one"
                            argument)))
     (let ((call (cons name (loop for argument in arguments
                                  collect (pattern-code argument known))))
@@ -169,8 +170,8 @@ others wait for."
        ,(watched-code step known))))
 
 (defun task-net-code (forms known results)
-  "Return the plan text of the task net FORMS. KNOWN are the Lisp variables that have values, RESULTS
-those of the results of the RAP."
+  "Return the plan text of the task net FORMS. KNOWN are the Lisp variables that have values,
+RESULTS those of the results of the RAP."
   (multiple-value-bind (steps orders) (parse-net forms)
     (checked-steps steps)
     (let* ((given (step-results steps))
