@@ -190,7 +190,7 @@
 
 (defsystem "ars-magna/worlds"
   :description "Worlds, robots and plans to start with."
-  :depends-on ("ars-magna")
+  :depends-on ("ars-magna" "ars-magna/rap")
   :serial t
   :components
   ((:module "worlds" :serial t
@@ -207,7 +207,10 @@
                  (:file "tileworld-foresight") (:file "tileworld-tiles")
                  (:file "tileworld-tiles-agents") (:file "tileworld-tiles-camera")
                  (:file "tileworld-wind") (:file "tileworld-wind-agents")
-                 (:file "pursuit") (:file "pursuit-modelling")))))
+                 (:file "pursuit") (:file "pursuit-modelling")
+                 (:file "truckworld") (:file "truckworld-actions") (:file "truckworld-work")
+                 (:file "truckworld-agents") (:file "truckworld-raps")
+                 (:file "truckworld-testbed")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"
