@@ -445,7 +445,7 @@
                  (:file "thinking-experiments") (:file "tileworld-bare") (:file "testbeds")
                  (:file "pursuit-bare") (:file "testbeds-pursuit")
                  (:file "testbeds-tiles") (:file "testbeds-agents") (:file "testbeds-shell")
-                 (:file "rap") (:file "rap-random")
+                 (:file "testbeds-trucks") (:file "rap") (:file "rap-random")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

@@ -34,7 +34,8 @@
   (:import-from :ars-magna.rpl-robot #:define-fluents #:define-outcome)
   (:import-from :ars-magna.base #:define-argument-type)
   (:import-from :ars-rap #:define-rap #:define-memory-rule #:rap-failed #:memory-add
-                #:memory-delete #:memory-set #:memory-query #:install-goal #:remove-goal #:agenda-goals #:work-on-agenda)
+                #:memory-delete #:memory-set #:memory-query #:install-goal #:remove-goal
+                #:agenda-goals #:work-on-agenda)
   (:export #:truckworld #:truck #:country #:play
            #:worth-delivered #:delivered #:dropped #:fuel-used #:bound
            #:game-time* #:parcel-interval* #:deadline-time* #:rain-share* #:slip-prob*

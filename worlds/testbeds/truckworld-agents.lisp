@@ -51,7 +51,9 @@
            when (and (eql place (third belief)) (in-time-p belief time)) sum (fourth belief))
      (if (member place *depots*) (/ (expected-worth place time) 2) 0)))
 
-(defparameter *patience* .985d0 "How much less is worth what comes a tick later, as a factor.")
+(defun discount (ticks)
+  "Return how much what comes in so many TICKS is worth now: 3/2 percent less for each tick."
+  (exponential (* -.015d0 ticks)))
 
 (defun tour-worth (place time targets depth times)
   "Return what the best tour over DEPTH of TARGETS is worth that begins at PLACE after TIME. TIMES
@@ -64,7 +66,7 @@ are lists (place way...), ways as those of WAYS-FROM."
 (defun tour-worth-first (target place time targets depth times)
   "As TOUR-WORTH, if the tour goes to TARGET first."
   (let ((arrival (+ time 6 (second (assoc target (rest (assoc place times)))))))
-    (+ (* (prize target arrival) (expt *patience* (round arrival)))
+    (+ (* (prize target arrival) (discount arrival))
        (tour-worth target arrival (remove target targets) (1- depth) times))))
 
 (defun ranked-targets ()
@@ -80,7 +82,9 @@ are lists (place way...), ways as those of WAYS-FROM."
                                                     target))
                                 #'> :key #'first))))
 
-(defun choose-by-time () (checked-target (first (ranked-targets))))
+(defun choose-by-time ()
+  "Return the place that is first on the best tour over three targets, or one with fuel."
+  (checked-target (first (ranked-targets))))
 
 (defun worth-loading-p (belief)
   "True if the parcel of BELIEF can be delivered in time if the truck goes there at once."

@@ -125,12 +125,13 @@
        (push (append *leg* (list (simulation-tick))) *blocked*)
        (n-times 100 until (here)
          (rpl-move-truck back)
-         (wait-for truck-moved*))))
+         (wait-for truck-moved*))
+       (rank-goals)))
     (:no-fuel (wait-time 50))))
 
-(defun waiting-p (place)
-  "True if the truck should wait before it drives to PLACE, since the road was found blocked."
-  (let ((road (and (here) (find-road (here) place))))
+(defun closed-p (place)
+  "True if the road from here to PLACE, a neighbour or NIL, was found blocked."
+  (let ((road (and place (here) (find-road (here) place))))
     (and road (blocked-p road))))
 
 (define-rap
@@ -139,17 +140,13 @@
   (succeed (at truck ?place))
   (attempts 9)
   (method drive
-    (context (test (not (waiting-p place))))
-    (primitive (move-and-note place)))
-  (method wait-a-while
-    (context (test (waiting-p place)))
-    (primitive (rpl-spend-time 10)
-               (wait-for truck-moved*)
-               (fail))))
+    (context (test (not (closed-p place))))
+    (primitive (move-and-note place))))
 
 (defun next-step (place)
-  "Return the neighbour that is next on the way to PLACE, or to fuel; NIL if this is the place."
-  (third (assoc (checked-target place) (ways-from (here) #'time-cost))))
+  "Return the neighbour that is next on the way to PLACE, or to fuel; NIL if this is the place, or
+on a road."
+  (and (here) (third (assoc (checked-target place) (ways-from (here) #'time-cost)))))
 
 (defun nearer-end ()
   "Return the end of the road, where the truck is, that is nearer."
@@ -164,8 +161,13 @@ places on the way."
   (method leave-road
     (context (test (null (here))))
     (primitive (move-and-note (nearer-end))))
+  (method wait-for-road
+    (context (test (closed-p (next-step place))))
+    (primitive (rpl-spend-time 10)
+               (wait-for truck-moved*)
+               (rank-goals)))
   (method go-on
-    (context (test (here)))
+    (context (test (and (here) (not (closed-p (next-step place))))))
     (primitive (memory-set (list 'at 'truck (here)))
                (let ((step (next-step place)))
                  (if step
@@ -190,7 +192,8 @@ places on the way."
   (method by-truck (task-net (trip (travel-to ?depot)))))
 
 (defun rank-goals ()
-  "Put goals for the parcels aboard and the depots on the agenda, those whose targets are best first."
+  "Put goals for the parcels aboard and the depots on the agenda, those with the best targets
+first."
   (let ((targets (ranked-targets)))
     (memory-set (list 'best (first targets)))
     (dolist (goal (agenda-goals '(:waiting))) (remove-goal (getf goal :number)))

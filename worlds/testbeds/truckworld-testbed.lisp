@@ -1,4 +1,4 @@
-;;;; truckworld-testbed.lisp -- Truckworld as a testbed: how it is played, scored and what is claimed.
+;;;; truckworld-testbed.lisp -- Truckworld as a testbed: how it is scored, and what is claimed.
 
 (in-package :ars-testbeds.trucks)
 (in-readtable :nisp)
@@ -39,7 +39,7 @@
   (robot-set-speed truck max-speed*)
   (run-ticks 1)
   (let ((clock (find-thing 'clock)))
-    (run-kicker (set-kicker clock 'lay-out))
+    (run-kicker (set-kicker clock 'lay-roads))
     (run-ticks 1)
     (dolist (kicker '(change-weather wet next-parcel block-road ignite))
       (run-kicker (set-kicker clock kicker))))
@@ -74,7 +74,7 @@ for longest.")
            (valuable-first "Goes to the destination of the most valuable parcel first.")
            (planner "Goes where it gains most by the time in the present weather, and loads only
 what it can deliver in time.")
-           (rap-driver "As planner, made of RAPs: it tries again what fails, and scans twice in rain.")
+           (rap-driver "As planner, made of RAPs: tries again what fails, and scans twice in rain.")
            (look-ahead "As planner, but tries its three best targets in forks of the run."))
   (:robots truck)
   (:clean)

@@ -103,8 +103,7 @@ on the way."
         (nearest-fuel *place*)
         target)))
 
-;;; Working at a place. An agent is a list of three functions: CHOOSE returns where to go, COST is
-;;; that of roads, WANTED is true of beliefs about parcels to load.
+;;; Working at a place.
 
 (defun free-room () (loop for bin across (robot-bins truck) sum (floor (remaining-capacity bin))))
 
@@ -146,7 +145,7 @@ on the way."
           collect (list :unload (first belief))))
 
 (defun loading-tasks (wanted)
-  "Return tasks to load the parcels here that are WANTED, the most valuable first, if there is room."
+  "Return tasks to load the parcels here that are WANTED, the most valuable first, if they fit."
   (let ((parcels (remove-if-not (lambda (belief)
                                   (and (eql *place* (second belief))
                                        (/= *place* (third belief))

@@ -186,7 +186,7 @@ the share of the arm's strength."
   (dolist (share '(1/5 1/2 4/5))
     (put 'fence (between place other share) '(:color red) '(:obsmove t))))
 
-(defkicker lay-out (clock) (:prob 0)
+(defkicker lay-roads (clock) (:prob 0)
   (let ((roads (choose-roads)) (places (shuffled (loop for place below 12 collect place))))
     (setf *roads* (loop for (a b) in roads
                         collect (list a b (roll-element '(:paved :paved :gravel :gravel :dirt :dirt)
@@ -246,7 +246,8 @@ the share of the arm's strength."
 
 (defun spoilt-value (value ticks)
   "Return what milk of VALUE is worth after so many TICKS: it loses a tenth in 20."
-  (* value (expt 9/10 (floor ticks 20))))
+  (loop repeat (floor ticks 20) do (setf value (* 9/10 value)))
+  value)
 
 (defkicker spoil (parcel) (:prob 0)
   (set-attribute parcel :value (* 9/10 (get-attribute parcel :value)))
@@ -270,19 +271,19 @@ the share of the arm's strength."
     (run-kicker (set-kicker parcel 'expire) (- deadline now))
     (when milk (run-kicker (set-kicker parcel 'spoil) 20))))
 
-(defkicker vanish (thing) (:prob 0) (destroy-thing thing))
+(defkicker clear-away (thing) (:prob 0) (destroy-thing thing))
 
 (defkicker block-road (clock) (:prob 0)
   (run-kicker self (roll-ticks block-interval*))
   (destructuring-bind (a b surface) (roll-element *roads* (dice))
     (declare (ignore surface))
-    (run-kicker (set-kicker (put 'block (between a b .5) '(:color red) '(:obsmove t)) 'vanish)
+    (run-kicker (set-kicker (put 'block (between a b .5) '(:color red) '(:obsmove t)) 'clear-away)
                 (roll-ticks 100))))
 
 (defkicker ignite (clock) (:prob 0)
   (run-kicker self (roll-ticks fire-interval*))
   (let ((depot (roll-element *depots* (dice))))
-    (run-kicker (set-kicker (put 'fire (place-point depot) '(:color red)) 'vanish) 20)
+    (run-kicker (set-kicker (put 'fire (place-point depot) '(:color red)) 'clear-away) 20)
     (dolist (parcel *parcels*)
       (when (lies-at-p parcel depot) (remove-parcel parcel)))))
 
