@@ -253,3 +253,7 @@ lifted it."
         do (in-country (:seed seed)
              (is (= 13 (length ars-testbeds.trucks::*roads*)))
              (is (ars-testbeds.trucks::connected-p ars-testbeds.trucks::*roads*)))))
+
+(test trucks.claims-hold
+  (dolist (row (experiment:check-claims 'truckworld :seeds 12 :claims '(8)))
+    (is (getf row :holds) "~S" row)))
