@@ -260,3 +260,9 @@ lifted it."
 (test trucks.claims-hold
   (dolist (row (experiment:check-claims 'truckworld :seeds 8 :claims '(8)))
     (is (getf row :holds) "~S" row)))
+
+(test trucks.alone-take-their-commands
+  (run:with-simulation ('ars-worlds:dot :clean t)
+    (signals base:wrong-argument (ars-testbeds.trucks:refuel-truck ars-worlds:dot))
+    (signals base:wrong-argument
+      (ars-testbeds.trucks:load-parcel (robot:robot-hand ars-worlds:dot 0) 1 0))))

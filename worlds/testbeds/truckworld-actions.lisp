@@ -123,13 +123,21 @@ or an error code."
       (stop-here)
       (values code (if code nil (arrive place)) ticks))))
 
+(defun check-truck (part &rest arguments)
+  "Return ARGUMENTS. Signal WRONG-ARGUMENT unless PART is the truck or one of its parts."
+  (let ((robot (if (robot-p part) part (part-robot part))))
+    (unless (eq truck robot)
+      (error 'wrong-argument :operator "an action of Truckworld" :name 'robot :value robot
+                             :expected "the robot TRUCK of the world COUNTRY"))
+    arguments))
+
 (define-argument-type 'place-number (lambda (value) (typep value '(integer 0 11)))
   "the number of a place, from 0 to 11")
 (define-argument-type 'bay (lambda (value) (typep value '(integer 0 1))) "a bay, 0 or 1")
 
 (define-command move-truck (operation (robot robot) (place place-number "where to go"))
     ((place "the place, or NIL"))
-    ((:family :moving) (:delay 1) (:traits :drives)
+    ((:family :moving) (:delay 1) (:arguments check-truck) (:traits :drives)
      (:errors (:no-road "There is no road to that place" "The truck is not at the end of a road to
 the place." "Go to a neighbouring place.")
               (:road-blocked "Something blocks the road" "Something stands on the road."
@@ -169,7 +177,7 @@ the place." "Go to a neighbouring place.")
 (define-command load-parcel (operation (hand hand) (id integer "the number of a parcel")
                              (bay bay "the bay to put it into, 0 or 1"))
     ()
-    ((:family :handling) (:delay 1)
+    ((:family :handling) (:delay 1) (:arguments check-truck)
      (:errors (:not-here "There is no such parcel here" "The parcel is elsewhere." "Scan again.")
               (:parcel-too-heavy "The parcel is too heavy" "No arm can lift it." "Leave it.")
               (:bay-full "The bay is full" "A bay has room for 4 parcels." "Use the other bay.")
@@ -198,7 +206,7 @@ the place." "Go to a neighbouring place.")
 
 (define-command unload-parcel (operation (hand hand) (id integer "the number of a parcel"))
     ()
-    ((:family :handling) (:delay 1)
+    ((:family :handling) (:delay 1) (:arguments check-truck)
      (:errors (:not-aboard "The parcel is not aboard" "No bay has the parcel." "Load it.")
               (:not-at-place "The truck is on a road" "Parcels are unloaded at places."
                              "Go to a place.")))
@@ -232,7 +240,7 @@ the place." "Go to a neighbouring place.")
 
 (define-command scan-place (operation (camera camera))
     ((reports "lists (:parcel id destination value deadline weight) and (:drum fuel)"))
-    ((:family :looking) (:delay 1) (:traits :asks)
+    ((:family :looking) (:delay 1) (:arguments check-truck) (:traits :asks)
      (:report (reports) (format nil "Scan found ~D thing~:P" (length reports))))
     "Let CAMERA scan the place where the truck is. Things farther from the truck, and in rain, are
 missed more often, and the destinations of parcels are misread half as often."
@@ -252,7 +260,7 @@ missed more often, and the destinations of parcels are misread half as often."
 
 (define-command refuel-truck (operation (robot robot))
     ()
-    ((:family :handling) (:delay 1)
+    ((:family :handling) (:delay 1) (:arguments check-truck)
      (:errors (:no-fuel-here "There is no fuel here" "Neither a pump nor a drum is here."
                              "Go to a pump.")))
     "Let the truck ROBOT fill its tank at a pump, or by what is left in a drum."
@@ -262,7 +270,7 @@ missed more often, and the destinations of parcels are misread half as often."
 
 (define-command spend-time (operation (robot robot) (ticks tick-span "for how long"))
     ()
-    ((:family :moving) (:delay 1))
+    ((:family :moving) (:delay 1) (:arguments check-truck))
     "Let the truck ROBOT stand for TICKS."
   (begin-action operation 'do-nothing (max 1 ticks)))
 

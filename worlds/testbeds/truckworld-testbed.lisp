@@ -135,7 +135,7 @@ what it can deliver in time.")
    ("Atomic actions cost, since arms do not work at the same time."
     (())
     (:narrows planner idle (atomic* nil t)) (:narrows nearest-first idle (atomic* nil t)))
-   ("RAPs that try again and scan twice in rain beat those who go to the nearest destination."
+   ("RAPs, which try again and scan twice in rain, beat going to the nearest destination."
     (())
     (:better rap-driver nearest-first 0))
    ("It helps to look ahead."
