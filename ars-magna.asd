@@ -200,7 +200,7 @@
                  (:file "traffic") (:file "plans-moving") (:file "plans-looking")
                  (:file "plans-handling")
                  (:file "plans-errands") (:file "plans-locks") (:file "trials")
-                 (:file "plans-searching")
+                 (:file "plans-searching") (:file "recognising") (:file "plans-recognising")
                  (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))
    (:module "worlds/testbeds" :serial t
     :components ((:file "package") (:file "tileworld-holes") (:file "tileworld-cameras")

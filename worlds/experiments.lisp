@@ -53,3 +53,45 @@ does that depend on how often a look misses?"
         (run-plan way '((:color violet) (:substance glass)) watson-lookouts*))
   (:success (beside-p robbie (find-thing 'vase)))
   (:measure (driven (or (first (remove-if-not #'realp (trial-values))) :none))))
+
+;;; Recognising places. The robot is put down at places of OFFICE, and then near one of them.
+
+(defun thin-out (signature pixels)
+  "Return the round SIGNATURE that a camera with only PIXELS all round would have taken."
+  (let* ((strip (second signature)) (step (/ (length strip) pixels)))
+    (list :round (loop for i from 0 below (length strip) by step collect (elt strip i)))))
+
+(def-interp-proc signature-near (point pixels dice)
+  "Put the robot down within half a metre of POINT, with any heading. Return a signature there."
+  (place-robot (rpl-robot)
+               (+ (first point) (roll-within .5 dice)) (+ (second point) (roll-within .5 dice))
+               (roll-between 0 2pi dice))
+  (thin-out (take-round-signature '(1)) pixels))
+
+(def-interp-proc revisit-place (places pixels)
+  "Learn as many PLACES, at random, by signatures of PIXELS, and recognise one of them. Return the
+match. Fails with :WRONG-PLACE if another place matches better."
+  (let* ((dice (dice-for 'revisit-place))
+         (points (loop repeat places collect (random-clear-point dice)))
+         (visited (roll-index places dice)))
+    (dotimes (i places)
+      (learn-place i (signature-near (elt points i) pixels dice)))
+    (multiple-value-bind (name match)
+        (recognise-place (signature-near (elt points visited) pixels dice) :threshold 0)
+      (if (eql name visited) match (fail :class :wrong-place)))))
+
+(defexperiment recognising-places
+  "How often does a robot recognise the place where it is by what its camera sees, the more the
+pixels err, the fewer pixels there are, and the more places it knows?
+
+The robot learns PLACES random places of the office, each by one signature of PIXELS all round. Then
+it comes back to one of them, up to a metre from where it was, with another heading. MATCH is the
+match where it has recognised the place."
+  (:robots marvin)
+  (:vary (pixel-error-range* 2 10 20)
+         (pixels 4 9 18 36)
+         (places 10 40))
+  (:trials 200)
+  (:limit 5000)
+  (:run (run-plan 'revisit-place places pixels))
+  (:measure (match (or (first (remove-if-not #'realp (trial-values))) :none))))

@@ -44,9 +44,15 @@
   (:export #:watson-lookouts* #:look-near-and-far #:look-round #:make-out #:find-from-here
            #:go-and-look #:travel-watching #:look-on-the-way #:search-by-chance #:search-nearest
            #:search-watchfully)
+  ;; recognising
+  (:export #:pixel-tolerance* #:recognition-threshold* #:*known-places* #:signature-match
+           #:add-place #:learn-place #:recognise-place)
+  ;; plans: recognising
+  (:export #:take-signature #:take-round-signature #:*known-ways* #:explore-by-views
+           #:return-by-views)
   ;; experiments
   (:export #:fetching-against-motion-noise #:fetching-against-blindness-and-kicks
-           #:three-ways-of-searching)
+           #:three-ways-of-searching #:recognising-places)
   ;; choosing
   (:export #:leave-trolleys #:forecasts* #:choose-way #:carry-messages #:choosing-by-rollouts)
   ;; an errand with continuations
