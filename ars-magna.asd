@@ -398,6 +398,7 @@
                  (:file "measures") (:file "track-matching") (:file "track-matching-kept")
                  (:file "rangefinders") (:file "doors") (:file "run-variables")
                  (:file "run-variables-mistakes") (:file "run-variables-random")
+                 (:file "recognising-places")
                  (:file "rewinding-words") (:file "rewinding-handles")
                  (:file "rewinding-values")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")

@@ -1,9 +1,9 @@
-;;;; plans-recognising.lisp -- signatures from cameras, and a robot that finds back without odometry.
+;;;; plans-recognising.lisp -- signatures from cameras, and a way back without odometry.
 
-;;; EXPLORE-BY-VIEWS wanders about in steps. It learns places by their views, and ways between them: in
-;;; which direction a step leads to which place. RETURN-BY-VIEWS follows these ways back. Views tell
-;;; where the robot is, and which way it faces, so errors do not add up. Neither plan uses a map, an
-;;; odometer or a position.
+;;; EXPLORE-BY-VIEWS wanders about in steps. It learns places by their views, and ways between them:
+;;; in which direction a step leads to which place. RETURN-BY-VIEWS follows these ways back. Views
+;;; tell where the robot is, and which way it faces, so errors do not add up. Neither plan uses a
+;;; map, an odometer or a position.
 
 (in-package :ars-worlds)
 (in-readtable :nisp)
@@ -112,8 +112,8 @@ something stopped the robot."
                              (list (first sides) (second sides) 0 2))))))
 
 (defun note-step (from angle to turn blocked)
-  "Note what a step from the place FROM has shown: it leads to TO, where the robot has the turn TURN,
-and back, unless something BLOCKED the robot."
+  "Note that a step from the place FROM leads to TO, where the robot has the turn TURN, and back,
+unless something BLOCKED the robot."
   (if (eql from to)
       (when blocked (note-way from angle nil))
       (progn (note-way from angle to)

@@ -44,7 +44,7 @@ by less match in part: equal pixels by 1, pixels that differ by half as much by 
 (defun check-signature (operator signature)
   (check-arguments operator
                    (list (signature-p signature) "signature" signature
-                         "a list (:round view...) or (:fixed view...), such as LOOK-ROUND returns")))
+                         "a list (:round view...) or (:fixed view...) of lists of numbers")))
 
 (defun check-places (operator places)
   (check-arguments operator
