@@ -4,9 +4,9 @@
 
 ;;; A program is a list of RAPs, each a list (name success attempts method...), where SUCCESS is a
 ;;; pattern or NIL. A method is a list (context deed...). CONTEXT is a list of patterns, or lists
-;;; (not pattern). A deed is (wait n), (add pattern), (delete pattern), (quit), which fails, or (call
-;;; name argument); a RAP calls only later ones. The model runs programs on a list of facts, the
-;;; newest first, and a clock. It enumerates values of variables instead of following facts.
+;;; (not pattern). A deed is (wait n), (add pattern), (delete pattern), (quit), which fails, or
+;;; (call name argument); a RAP calls only later ones. The model runs programs on a list of facts,
+;;; the newest first, and a clock. It enumerates values of variables instead of following facts.
 
 (defparameter *model-values* '(a b c))
 (defparameter *model-relations* '(p q r))

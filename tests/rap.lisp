@@ -146,6 +146,17 @@
   (let ((notes (rap-notes (is (typep (failure-of-run 'rap-broken) 'lisp-failure)))))
     (is (equal '() notes))))
 
+(define-rap (index (rap-lose ?thing))
+  (method (context (at ?thing ?place))
+          (primitive (memory-delete `(at ,thing ?))
+                     (memory-add (list 'gone ?thing ?place (memory-query '?x '(at ?x ?)))))))
+
+(test rap.quoted-data-in-code-stay-patterns
+  (in-rap-run
+    (mapc #'memory-add '((at cup sink) (at pan stove)))
+    (run-plan 'rap-lose 'cup)
+    (is (equal '((gone cup sink (pan)) (at pan stove)) (mapcar #'first main-memory*)))))
+
 ;;; Task nets.
 
 (define-rap (index (rap-hum ?what))

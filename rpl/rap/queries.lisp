@@ -125,8 +125,8 @@ facts that follow by rules."
       (t (typep query '(cons t (cons t (cons t null))))))))
 
 (defparameter *query-syntax*
-  (format nil "a pattern such as (at ?thing depot), (and query...), (or query...), (not query), (= a ~
-               b), also /= < > <= >=, or (within ticks pattern)")
+  (format nil "a pattern such as (at ?thing depot), (and query...), (or query...), (not query), (= ~
+               a b), also /= < > <= >=, or (within ticks pattern)")
   "What messages say of queries.")
 
 (defun check-query (operator query)

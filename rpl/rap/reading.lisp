@@ -19,9 +19,16 @@
       (walk object))
     (reverse found)))
 
+(defun quoted-p (form)
+  "True if FORM is quoted, with a quote or a backquote."
+  (and (consp form)
+       (symbolp (car form))
+       (member (car form) '(quote quasiquote) :test #'string=)))
+
 (defun code-with-variables (form)
-  "Return FORM with the Lisp variable x in place of ?x."
-  (cond ((variable-p form) (variable-of form))
+  "Return FORM, code, with the Lisp variable x in place of ?x. Quoted data stay patterns."
+  (cond ((variable-p form) (if (anonymous-p form) form (variable-of form)))
+        ((quoted-p form) form)
         ((consp form) (cons (code-with-variables (car form)) (code-with-variables (cdr form))))
         (t form)))
 
