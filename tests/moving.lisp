@@ -276,7 +276,9 @@ exactly once."
 ;;; What holds for every command.
 
 (defun moving-commands ()
-  (remove :moving (command:all-commands) :key #'command:command-family :test-not #'eq))
+  "Return the commands that move a robot, without those of testbeds."
+  (remove-if (lambda (command) (host:users-symbol-p (command:command-name command)))
+             (remove :moving (command:all-commands) :key #'command:command-family :test-not #'eq)))
 
 (defun answers-when (command &rest then)
   "Issue COMMAND, then call THEN; return what the continuation got, and what :INTERRUPT gives."

@@ -161,7 +161,7 @@ lifted it."
     (in-country (:parameters `((ars-testbeds.trucks:atomic* ,atomic)))
       (let ((place (first-road)))
         (ars-testbeds.trucks::put 'block (ars-testbeds.trucks::between 0 place 1/2) '(:obsmove t))
-        (is (eq :road-blocked
+        (is (eq :road-closed
                 (drive-truck place)))
         (is (null (ars-testbeds.trucks:here)))
         (is (null (drive-truck 0)))

@@ -88,7 +88,7 @@ or an error code."
             (:no-fuel (fail-with operation :no-fuel))
             (:stuck (go-on operation 'dig-out *time-stuck*))
             (t (if (drive-tick robot cells)
-                   (fail-with operation :road-blocked)
+                   (fail-with operation :road-closed)
                    (go-on operation 'drive-on))))))))
 
 (defun dig-out (operation) (fail-with operation :stuck))
@@ -116,7 +116,7 @@ or an error code."
             do (let ((cells (road-tick robot left)))
                  (cond ((symbolp cells) (setf code cells))
                        ((blocked-after-p robot place (- all left (- cells)))
-                        (setf code :road-blocked))
+                        (setf code :road-closed))
                        (t (decf left (* cells (+ 1 (roll-within motion-noise*
                                                                 (robot-dice robot :motion)))))))
                  (incf ticks (if (eq :stuck code) *time-stuck* 1))))
@@ -140,7 +140,7 @@ or an error code."
     ((:family :moving) (:delay 1) (:arguments check-truck) (:traits :drives)
      (:errors (:no-road "There is no road to that place" "The truck is not at the end of a road to
 the place." "Go to a neighbouring place.")
-              (:road-blocked "Something blocks the road" "Something stands on the road."
+              (:road-closed "Something blocks the road" "Something stands on the road."
                              "Go back and around it, or wait.")
               (:stuck "The truck was stuck" "Wheels slipped, and had to be dug out." "Go on.")
               (:no-fuel "The tank is empty" "There is no fuel." "Refuel in time."))

@@ -120,7 +120,7 @@
   (wait-for truck-moved*)
   (case (fluent-value truck-error*)
     ((nil) (memory-set (list 'at 'truck place)))
-    (:road-blocked
+    (:road-closed
      (let ((back (first (remove place *leg*))))
        (push (append *leg* (list (simulation-tick))) *blocked*)
        (n-times 100 until (here)

@@ -202,7 +202,7 @@ fuel, the truck stays."
                             (case err
                               ((nil) (funcall then))
                               (:stuck (drive-to place then))
-                              (:road-blocked (turn-back place then))
+                              (:road-closed (turn-back place then))
                               (:no-road (wait 5 then)))))))
 
 (defun turn-back (place then)
