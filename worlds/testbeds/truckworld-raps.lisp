@@ -155,7 +155,7 @@ on a road."
 (define-rap
   "Travel to PLACE, by way of fuel if there may be too little, unless it has been outbid. Serve the
 places on the way."
-  (index (travel-to ?place))
+  (index (reach-place ?place))
   (succeed (or (at truck ?place) (outbid ?place)))
   (attempts 30)
   (method leave-road
@@ -182,14 +182,14 @@ places on the way."
   (index (deliver-parcel ?id ?place))
   (succeed (not (aboard ?id ? ? ? ?)))
   (attempts 1)
-  (method by-truck (task-net (trip (travel-to ?place)))))
+  (method by-truck (task-net (trip (reach-place ?place)))))
 
 (define-rap
   "Look for parcels at DEPOT."
   (index (visit-depot ?depot))
   (succeed (at truck ?depot))
   (attempts 1)
-  (method by-truck (task-net (trip (travel-to ?depot)))))
+  (method by-truck (task-net (trip (reach-place ?depot)))))
 
 (defun rank-goals ()
   "Put goals for the parcels aboard and the depots on the agenda, those with the best targets
