@@ -266,3 +266,7 @@ lifted it."
     (signals base:wrong-argument (ars-testbeds.trucks:refuel-truck ars-worlds:dot))
     (signals base:wrong-argument
       (ars-testbeds.trucks:load-parcel (robot:robot-hand ars-worlds:dot 0) 1 0))))
+
+(test trucks.commands-are-in-no-other-menu
+  (is (null (search "MOVE-TRUCK" (joined (type-batch "help")))))
+  (is (search "Drive the truck" (joined (type-batch "help move-truck")))))

@@ -13,8 +13,19 @@
     (write-filled (first-clause (line-sentence line)) 27
                   (format nil "  ~A" (line-command-usage line)))))
 
+(defun other-testbeds-line-p (line)
+  "True if LINE is a command of a testbed in which the robot of the prompt does not play."
+  (let* ((command (find-command (line-name line) nil))
+         (home (and command (symbol-package (command-name command)))))
+    (and home
+         (find-if (lambda (testbed)
+                    (and (eq home (symbol-package (testbed-name testbed)))
+                         (not (member *prompt-robot* (testbed-robots testbed)))))
+                  (all-testbeds)))))
+
 (defun lines-in-family (family)
-  (remove family (all-line-commands) :key #'line-family :test-not #'eq))
+  (remove-if #'other-testbeds-line-p
+             (remove family (all-line-commands) :key #'line-family :test-not #'eq)))
 
 (defun write-main-menu ()
   (loop for (family . title) in *line-families*
