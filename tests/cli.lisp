@@ -245,7 +245,7 @@ of lines, and the number of errors."
 
 (test help.comes-from-the-definitions
   (let ((menu (joined (type-batch "help"))))
-    (dolist (line (cli:all-line-commands))
+    (dolist (line (remove-if #'cli::other-testbeds-line-p (cli:all-line-commands)))
       (when (member (cli::line-family line) '(:general :seeing :running :moving))
         (is-true (search (cli:line-name line) menu) "~A" line))))
   (is-true (has-words-p (joined (type-batch "help go-forward")) "GO-FORWARD time" "ticks"

@@ -226,6 +226,10 @@
                ((define-rap (index (foo)) (method (task-net (a (b) (for c)))))
                 . "the tag of a step")
                ((define-rap (index (foo)) (method (task-net (a (b ?x))))) . "no ?x")
+               ((define-rap (index (foo)) (method (task-net (a (b) (until-end a)))))
+                . "another step")
+               ((define-rap (index (foo)) (method (task-net (a (b) (until-hell a)))))
+                . "(until-start tag) or (until-end tag)")
                ((define-rap (index (foo)) (method (context (and x)) (primitive 1))) . "a pattern")
                ((define-rap (index (foo => ?x)) (succeed (y)) (method (primitive 1))) . "?x")
                ((define-rap (index (foo)) (attempts 0) (method (primitive 1))) . "(attempts n)")
@@ -274,8 +278,21 @@
     (reset-agenda)
     (is (null main-agenda*))))
 
+(test rap.a-goal-whose-plan-is-ended-has-failed
+  (in-rap-run
+    (install-goal '(rap-use a 50) 1)
+    (let ((task (begin-plan 'work-on-agenda)))
+      (run-ticks 5)
+      (end-plan task)
+      (run-ticks 2))
+    (is (equal '(:failed) (mapcar (lambda (goal) (getf goal :state)) (agenda-goals))))
+    (install-goal '(rap-use b 2) 1)
+    (is (= 1 (process-goal-agenda)))))
+
 (test rap.goals-are-checked
   (in-rap-run
+    (signals wrong-argument (install-goal '(rap-use ?x 1)))
+    (signals wrong-argument (remove-goal '(rap-use a 1)))
     (signals wrong-argument (install-goal '(no-such-rap)))
     (signals wrong-argument (install-goal 'rap-boss))
     (signals wrong-argument (install-goal '(rap-boss) :high))

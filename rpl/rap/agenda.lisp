@@ -20,6 +20,8 @@ oldest first. See AGENDA-GOALS.")
   (unless (goal-call-p goal)
     (reject-argument operator 'goal goal
                      "a list (name argument...) with the name of a RAP or another plan"))
+  (unless (ground-p goal)
+    (reject-argument operator 'goal goal "a list without variables such as ?x"))
   (unless (realp priority) (reject-argument operator 'priority priority "a number"))
   (unless (typep deadline '(or null real))
     (reject-argument operator 'deadline deadline "a tick, or NIL")))
@@ -52,8 +54,9 @@ lists with :number, :goal, :priority, :deadline, :state and :note. STATE is :WAI
                           row))))
 
 (defun remove-goal (number)
-  "Remove the goal NUMBER from the agenda of the current run, unless it is being worked on. Return
-true if it was there. Signals MISUSE if it is active."
+  "Remove the goal NUMBER, as INSTALL-GOAL returns it, from the agenda of the current run. Return
+true if it was there. Signals WRONG-ARGUMENT, and MISUSE if the goal is being worked on."
+  (unless (integerp number) (reject-argument 'remove-goal 'number number "the number of a goal"))
   (let ((row (assoc number main-agenda*)))
     (when (eq :active (fifth row))
       (reject-use "The goal ~D is active. Evaporate its task to end it." number))
@@ -98,7 +101,17 @@ row of the agenda, and mark it as active. Return NIL if none waits."
     (warn "The goal ~A failed: ~A" number (failure-text failure))))
 
 (def-interp-proc pursue-goal (row)
-  "Work for the goal of ROW, a row of the agenda. Return true if it is achieved."
+  "Work for the goal of ROW, a row of the agenda. Return true if it is achieved. A goal whose work
+is ended from outside has failed."
+  (evap-protect (pursue-active-goal row) (note-interruption (first row))))
+
+(defun note-interruption (number)
+  "Mark the goal NUMBER as failed if it is still active: its work was ended from outside."
+  (when (eq :active (fifth (assoc number main-agenda*)))
+    (set-goal-state number :failed "Its plan was ended.")))
+
+(def-interp-proc pursue-active-goal (row)
+  "Work for the goal of ROW, which is active. Return true if it is achieved."
   (let ((number (first row)) (goal (second row)) (deadline (fourth row)))
     (handle-failure ((t (failure) (note-failure number failure) (return nil)))
       (with-task-variables ((goal-priority* (third row)))

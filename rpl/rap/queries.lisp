@@ -14,7 +14,7 @@
 
 (define-registry memory-rule "memory rule" :object-p memory-rule-p :by-symbol t :internal t)
 
-(defparameter *rule-depth-limit* 100 "How deeply rules may use each other.")
+(defparameter *rule-depth-limit* 1000 "How deeply rules may use each other.")
 
 (defvar *rules-in-use* '()
   "What this thread is finding out by rules, innermost first: lists (rule pattern).")

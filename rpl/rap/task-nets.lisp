@@ -27,14 +27,15 @@
 (defun parse-step (form)
   (unless (and (typep form '(cons (and symbol (not null)) (cons cons))) (proper-list-p form)
                (proper-list-p (second form)))
-    (reject-part form "a step (tag (name argument...) annotation...), (sequence step...) or ~
-                       (parallel step...)"))
+    (reject-part form (format nil "a step (tag (name argument...) annotation...), (sequence ~
+                                   step...) or (parallel step...)")))
   (destructuring-bind (tag call . annotations) form
     (dolist (annotation annotations)
       (unless (annotation-kind annotation)
-        (reject-part annotation "an annotation (fact for tag), (for tag), (wait-for query tag), ~
-                                 (wait-for query :succeed), (wait-for query :fail), (until-start ~
-                                 tag) or (until-end tag)")))
+        (reject-part annotation
+                     (format nil "an annotation (fact for tag), (for tag), (wait-for query tag), ~
+                                  (wait-for query :succeed), (wait-for query :fail), (until-start ~
+                                  tag) or (until-end tag)"))))
     (multiple-value-bind (call results) (split-result call)
       (make-net-step :tag tag :call call :results results :annotations annotations))))
 
@@ -76,7 +77,9 @@
           (unless (or (member tag tags)
                       (and (eq :wait-for (annotation-kind annotation))
                            (member tag '(:succeed :fail))))
-            (reject-part annotation (format nil "the tag of a step: ~{~(~A~)~^, ~}" tags))))
+            (reject-part annotation (format nil "the tag of a step: ~{~(~A~)~^, ~}" tags)))
+          (when (eq tag (net-step-tag step))
+            (reject-part annotation "the tag of another step")))
         (case (annotation-kind annotation)
           (:fact (check-rap-query (first annotation)))
           (:wait-for (check-rap-query (second annotation))))))))
