@@ -278,6 +278,18 @@
     (reset-agenda)
     (is (null main-agenda*))))
 
+(test rap.an-error-of-lisp-in-a-goal-is-told-with-its-place
+  (in-rap-run
+    (let* ((goal '(rap-broken))
+           (told (with-output-to-string (*error-output*)
+                   (handler-bind ((warning (lambda (warning)
+                                             (format *error-output* "~A" warning)
+                                             (muffle-warning warning))))
+                     (is (not (execute-goal goal)))))))
+      (is (search "(rap-broken) failed" told) "~A" told)
+      (is (search "broken arm" told))
+      (is (search "at tick 0 in" told)))))
+
 (test rap.a-goal-whose-plan-is-ended-has-failed
   (in-rap-run
     (install-goal '(rap-use a 50) 1)

@@ -96,9 +96,10 @@ row of the agenda, and mark it as active. Return NIL if none waits."
     best))
 
 (defun note-failure (number failure)
+  "Mark the goal NUMBER as failed by FAILURE. Warn of an error of Lisp, with its place in the plan."
   (set-goal-state number :failed (failure-text failure))
   (when (typep failure 'lisp-failure)
-    (warn "The goal ~A failed: ~A" number (failure-text failure))))
+    (warn "The goal ~A failed: ~S" (data-text (second (assoc number main-agenda*))) failure)))
 
 (def-interp-proc pursue-goal (row)
   "Work for the goal of ROW, a row of the agenda. Return true if it is achieved. A goal whose work
