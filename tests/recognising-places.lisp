@@ -243,3 +243,49 @@ start, and its position."
     (is (equal '(0 1 4) (ars-worlds::first-way 0 (lambda (place) (eql place 3)))))
     (is (equal '(0 0 1) (ars-worlds::first-way 0 (lambda (place) (eql place 2)))))
     (is (null (ars-worlds::first-way 3 (lambda (place) (eql place 0)))))))
+
+(test ways.lead-between-places-with-names-of-all-kinds
+  (run:with-simulation (ars-worlds:dot)
+    (setf ars-worlds:*known-ways* '(("a" 0 b) (b 0 "c") ("c" 0 "a")))
+    (is (equal '("a" 0 b) (ars-worlds::first-way "a" (lambda (place) (equal place "c")))))))
+
+(defun explored (seed &rest options)
+  "Let PORTER learn its start as the place 1, and explore with OPTIONS. Return the names of the
+places that it knows then."
+  (run:with-simulation (ars-worlds:porter :seed seed)
+    (driver:run-plan (rpl:interp-lambda ()
+                       (ars-worlds:learn-place 1 (ars-worlds:take-round-signature))))
+    (apply #'driver:run-plan 'ars-worlds:explore-by-views options)
+    (mapcar #'first ars-worlds:*known-places*)))
+
+(test explore-by-views.gives-each-place-a-number-of-its-own
+  (is (equal '(1 2 3) (explored 1 :places 3 :threshold .99))))
+
+(test explore-by-views.learns-the-more-places-the-higher-the-threshold
+  (flet ((known (threshold) (length (explored 1 :places 3 :threshold threshold))))
+    (is (= 1 (known 0)))
+    (is (= 3 (known 1)))))
+
+(defun failure-of-plan (robot name &rest arguments)
+  "Return the text of the failure of the plan NAME with ARGUMENTS on ROBOT, which knows place A."
+  (run:with-simulation (robot)
+    (ars-worlds:learn-place 'a '(:round (1 2 3)))
+    (princ-to-string (apply #'driver:run-plan name arguments))))
+
+(robot:defrobot blind-robot (cell-of-squinter (3.5 3.5) 0))
+
+(test finding-back.rejects-wrong-arguments
+  (loop for (robot name arguments . words)
+          in '((ars-worlds:dot ars-worlds:explore-by-views (:places 0) ":places" "from 1")
+               (ars-worlds:dot ars-worlds:explore-by-views (:step -1) ":step" "above 0")
+               (ars-worlds:dot ars-worlds:explore-by-views (:cameras 0) "one or more indices")
+               (blind-robot ars-worlds:explore-by-views () "one or more indices" "has 0")
+               (blind-robot ars-worlds:take-signature () "one or more indices")
+               (ars-worlds:dot ars-worlds:return-by-views (:to b) ":to is B" "one of A")
+               (ars-worlds:dot ars-worlds:return-by-views (:to a :step 0) ":step")
+               (ars-worlds:dot ars-worlds:return-by-views (:to a :patience 1/2) ":patience"))
+        for text = (apply #'failure-of-plan robot name arguments)
+        do (dolist (word words) (is (search word text) "~A lacks ~A" text word)))
+  (let ((text (princ-to-string (run:with-simulation (ars-worlds:dot)
+                                 (driver:run-plan 'ars-worlds:return-by-views)))))
+    (is (search "none is known before explore-by-views" (string-downcase text)))))

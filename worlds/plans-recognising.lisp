@@ -14,6 +14,13 @@
   "Return the indices of all cameras of the plan's robot."
   (loop for camera below (rpl-robot-num-cameras) collect camera))
 
+(defun check-cameras (operator cameras)
+  (check-arguments operator
+                   (list (and (consp cameras) (ars-magna.base:proper-list-p cameras))
+                         "cameras" cameras
+                         (format nil "a list of one or more indices of cameras: ~A has ~D"
+                                 (rpl-robot) (rpl-robot-num-cameras)))))
+
 (defun views-all-round (camera)
   "Return how many views of CAMERA make a circle. Signals WRONG-ARGUMENT if no number of them does."
   (let* ((field (rpl-camera-field-of-view camera)) (count (round 2pi field)))
@@ -28,6 +35,7 @@
 
 (def-interp-proc take-signature (&optional (cameras (all-cameras)))
   "Return a signature of the views of CAMERAS, a list of indices, as they point now."
+  (check-cameras 'take-signature cameras)
   (let ((views '()))
     (dolist (camera cameras) (push (take-view camera) views))
     (cons :fixed (reverse views))))
@@ -39,6 +47,7 @@
 (def-interp-proc take-round-signature (&optional (cameras (all-cameras)))
   "Turn each of CAMERAS, a list of indices, all round and return a signature of what they saw. The
 field of view of each must divide a circle. Fails with WRONG-ARGUMENT otherwise."
+  (check-cameras 'take-round-signature cameras)
   (let ((strips '()))
     (dolist (camera cameras)
       (let ((count (views-all-round camera)) (pixels '()))
@@ -57,7 +66,7 @@ field of view of each must divide a circle. Fails with WRONG-ARGUMENT otherwise.
   "The ways that EXPLORE-BY-VIEWS has found in this run: lists (from angle to).")
 
 (defun ways-from (place)
-  (remove place *known-ways* :key #'first :test-not #'eql))
+  (remove place *known-ways* :key #'first :test-not #'equal))
 
 (defun known-way (from angle)
   "Return the way from the place FROM that has nearly the direction ANGLE, or NIL."
@@ -78,11 +87,16 @@ none lead there."
           do (when (and ways (funcall test place)) (return (first (last ways))))
              (dolist (way (ways-from place))
                (let ((to (third way)))
-                 (when (and to (not (member to seen)))
+                 (when (and to (not (member to seen :test #'equal)))
                    (push to seen)
                    (setf routes (append routes (list (list* to way ways))))))))))
 
 ;;; Steps. Where the robot is: the name of a place, and how far it has turned since it learned it.
+
+(defun unused-number ()
+  "Return a number that no known place has as its name: how many are known, if possible."
+  (loop for number from (length *known-places*)
+        unless (assoc number *known-places*) return number))
 
 (def-interp-proc find-out-place (cameras threshold)
   "Return the name of the place where the robot is, and how far it has turned since it learned that
@@ -92,7 +106,7 @@ place. If the best match is below THRESHOLD, learn the place, with a number as i
       (declare (ignore match))
       (if name
           (values name turn)
-          (values (learn-place (length *known-places*) signature) 0)))))
+          (values (learn-place (unused-number) signature) 0)))))
 
 (def-interp-proc step-and-look (angle step cameras threshold)
   "Turn the robot by ANGLE and drive STEP metres. Return what FIND-OUT-PLACE does, and true if
@@ -114,24 +128,36 @@ something stopped the robot."
 (defun note-step (from angle to turn blocked)
   "Note that a step from the place FROM leads to TO, where the robot has the turn TURN, and back,
 unless something BLOCKED the robot."
-  (if (eql from to)
+  (if (equal from to)
       (when blocked (note-way from angle nil))
       (progn (note-way from angle to)
              (unless blocked (note-way to (+ turn pi) from)))))
 
-(def-interp-proc explore-by-views (&key (places 8) (step 2) (cameras (all-cameras)))
+(defun check-count (operator name value)
+  (check-arguments operator (list (and (integerp value) (plusp value)) name value
+                                  "a whole number, from 1")))
+
+(defun check-step (operator step)
+  (check-arguments operator (list (and (realp step) (plusp step)) ":step" step
+                                  "a number of metres above 0")))
+
+(def-interp-proc explore-by-views (&key (places 8) (step 2) (cameras (all-cameras))
+                                        (threshold recognition-threshold*))
   "Let the robot wander about in steps of STEP metres until it knows PLACES places, or has gone ten
-steps for each. CAMERAS are indices. The places are in *KNOWN-PLACES*, with numbers as names: 0 is
-where the robot started. The ways are in *KNOWN-WAYS*. Return how many places are known."
+steps for each. If no known place matches by THRESHOLD, the robot learns another place. CAMERAS are
+indices. The places are in *KNOWN-PLACES*, with numbers as names: 0 is where the robot started. The
+ways are in *KNOWN-WAYS*. Return how many places are known. Fails with WRONG-ARGUMENT."
+  (check-count 'explore-by-views ":places" places)
+  (check-step 'explore-by-views step)
   (with-valve ((rpl-robot-valve))
     (let ((dice (dice-for 'explore-by-views)))
-      (multiple-value-bind (here turn) (find-out-place cameras recognition-threshold*)
+      (multiple-value-bind (here turn) (find-out-place cameras threshold)
         (n-times (* 10 places) WHILE (< (length *known-places*) places)
           (let ((angle (or (untried-angle here turn dice)
                            (second (first-way here (lambda (place) (untried-angle place 0 dice))))
                            (roll-between 0 2pi dice))))
             (multiple-value-bind (to there blocked)
-                (step-and-look (- angle turn) step cameras recognition-threshold*)
+                (step-and-look (- angle turn) step cameras threshold)
               (note-step here angle to there blocked)
               (setf here to turn there))))))
     (length *known-places*)))
@@ -141,18 +167,26 @@ where the robot started. The ways are in *KNOWN-WAYS*. Return how many places ar
 (def-interp-proc return-by-views (&key (to 0) (step 2) (cameras (all-cameras)) (patience 60))
   "Bring the robot back to the place TO, which EXPLORE-BY-VIEWS has learned with the same STEP and
 CAMERAS, by recognition alone. Return how many steps that took. Fails with :LOST after PATIENCE
-steps."
+steps, or with WRONG-ARGUMENT."
+  (check-arguments 'return-by-views
+                   (list (assoc to *known-places* :test #'equal) ":to" to
+                         (format nil "the name of a known place~:[: none is known before ~
+                                      EXPLORE-BY-VIEWS or LEARN-PLACE has run~;, one of ~
+                                      ~:*~{~S~^, ~}~]"
+                                 (mapcar #'first *known-places*))))
+  (check-step 'return-by-views step)
+  (check-count 'return-by-views ":patience" patience)
   (with-valve ((rpl-robot-valve))
     (let ((count 0) (stuck nil) (dice (dice-for 'return-by-views)))
       (multiple-value-bind (here turn) (find-out-place cameras 0)
-        (loop UNTIL (eql here to)
+        (loop UNTIL (equal here to)
           (if (>= count patience) (fail :class :lost :at here))
           (incf count)
-          (let ((way (first-way here (lambda (place) (eql place to)))))
+          (let ((way (first-way here (lambda (place) (equal place to)))))
             (multiple-value-bind (next there blocked)
                 (step-and-look (if (and way (not stuck))
                                    (- (second way) turn)
                                    (roll-between 0 2pi dice))
                                step cameras 0)
-              (setf stuck (and blocked (eql here next)) here next turn there)))))
+              (setf stuck (and blocked (equal here next)) here next turn there)))))
       count)))
