@@ -316,17 +316,30 @@
              (second (ars-worlds::paired-comparison-lines '("limit" "limit" "limit")
                                                           '("success" "success" "success"))))))
 
-(test figures.on-the-page-exist
-  (let ((page (base:file-text (project-file "worlds/README.md"))) (shown 0))
-    (is (search (ars-worlds::comment-line "table of choosing-by-rollouts") page))
-    (loop for (experiment . names) in ars-worlds::*page-pictures*
-          do (is (search (ars-worlds::comment-line (format nil "table of ~A" experiment)) page))
-             (dolist (name names)
-               (let ((file (format nil "pictures/~(~A~)/~A.svg" experiment name)))
-                 (incf shown)
-                 (is (search file page) "~A is not on the page" file)
-                 (is-true (probe-file (project-file (format nil "worlds/~A" file)))))))
-    (is (plusp shown))))
+(test figures.on-the-pages-exist
+  (loop for (experiment page function . names) in ars-worlds::*figures*
+        for text = (base:file-text (project-file (format nil "worlds/~A" page)))
+        do (is (search (ars-worlds::comment-line (format nil "table of ~A" experiment)) text))
+           (is-true (fboundp function))
+           (dolist (name names)
+             (let ((file (format nil "pictures/~(~A~)/~A.svg" experiment name)))
+               (is (search file text) "~A is not on ~A" file page)
+               (is-true (probe-file (project-file (format nil "worlds/~A" file))))))))
+
+(test figures.of-rates-have-a-column-for-each-value-of-the-last-factor
+  (with-report (results '("noise" "size") '()
+                        (loop for (texts successes) in '((("0" "x") 10) (("0" "y") 5)
+                                                         (("1" "x") 0) (("1" "y") 10))
+                              collect (list* texts (append (times successes '("success"))
+                                                           (times (- 10 successes)
+                                                                  '("failure"))))))
+    (is (equal '("| `noise` | x size | y size |" "|---|---|---|"
+                 "| 0 | 100 % (72 to 100) | 50 % (24 to 76) |"
+                 "| 1 | 0 % (0 to 28) | 100 % (72 to 100) |")
+               (ars-worlds::rate-table-lines results)))))
+
+(test figures.are-of-known-experiments
+  (signals base:wrong-argument (ars-worlds::save-figures "no-such-experiment")))
 
 (test figures.that-are-shipped-are-what-is-drawn-now
   "Those that take seconds. After a change of what pictures look like, run ./worlds/figures."

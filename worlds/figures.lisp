@@ -1,16 +1,21 @@
-;;;; figures.lisp -- runs the shipped experiments, and puts their results into worlds/README.md.
+;;;; figures.lisp -- runs the shipped experiments, and puts their results into their pages.
 
-;;; The command worlds/figures calls SAVE-FIGURES. Tables go into the page between two comments,
-;;; such as <!-- table of three-ways-of-searching --> and <!-- end of table -->. Pictures go into a
-;;; directory beside the page. The same code makes the same bytes.
+;;; The command worlds/figures calls SAVE-FIGURES. Tables go into a page between two comments, such
+;;; as <!-- table of three-ways-of-searching --> and <!-- end of table -->. Pictures go into
+;;; worlds/pictures/. The same code makes the same bytes.
 
 (in-package :ars-worlds)
 
-(defparameter *page-pictures*
-  '((fetching-against-motion-noise "success" "survival")
-    (fetching-against-blindness-and-kicks "success")
-    (three-ways-of-searching "success" "difference-in-success-by-way"))
-  "Lists (experiment picture...): the names of the pictures that the page shows.")
+(defparameter *figures*
+  '((choosing-by-rollouts "README.md" choosing-lines)
+    (fetching-against-motion-noise "README.md" results-lines "success" "survival")
+    (fetching-against-blindness-and-kicks "README.md" results-lines "success")
+    (three-ways-of-searching "README.md" results-lines "success" "difference-in-success-by-way")
+    (recognising-places "how-to/recognising-places/README.md" rate-table-lines
+     "success-places-10" "success-places-40")
+    (returning-by-views "how-to/recognising-places/README.md" rate-table-lines "success"))
+  "Lists (experiment page function picture...): the page that shows the results of an experiment,
+the function that makes the lines of the table, and the names of the pictures on the page.")
 
 (defparameter *trials-with-ways*
   '((fetching-against-motion-noise "motion-noise*=0.6" 60 (52 12 120 46))
@@ -99,7 +104,7 @@ the map to draw; NIL is the whole map.")
   '("always the short way" "always the long way" "either, at random" "chosen by rollouts")
   "The labels on the page for the conditions of CHOOSING-BY-ROLLOUTS, in order.")
 
-(defun in-time-p (outcome)
+(defun succeeded-p (outcome)
   (string= "success" outcome))
 
 (defun rate-text (successes trials)
@@ -111,19 +116,18 @@ the map to draw; NIL is the whole map.")
 (defun choosing-table-row (name results sample)
   "Return the row of the table for SAMPLE of RESULTS, with NAME as its first cell."
   (let* ((trials (length (sample-trials sample)))
-         (successes (count-if #'in-time-p (sample-outcomes sample)))
-         (rate (/ successes trials)))
-    (format nil "| ~A | ~A | ~,3F | ~,3F |" name (rate-text successes trials)
+         (rate (/ (count-if #'succeeded-p (sample-outcomes sample)) trials)))
+    (format nil "| ~A | ~A | ~,3F | ~,3F |" name (sample-rate-text sample)
             (/ (reduce #'+ (sample-measure results sample 'miss)) trials)
             (* rate (- 1 rate)))))
 
 (defun paired-comparison-lines (firsts bests)
   "Return lines that compare BESTS, outcomes with rollouts, with FIRSTS, outcomes by the short way."
   (let* ((more (count t (map 'list (lambda (first best)
-                                     (and (in-time-p best) (not (in-time-p first))))
+                                     (and (succeeded-p best) (not (succeeded-p first))))
                              firsts bests)))
          (less (count t (map 'list (lambda (first best)
-                                     (and (in-time-p first) (not (in-time-p best))))
+                                     (and (succeeded-p first) (not (succeeded-p best))))
                              firsts bests)))
          (p (mcnemar-test more less)))
     (list (format nil "In ~D pair~:P of trials with the same seed, only the rollouts were in time;"
@@ -145,6 +149,28 @@ the map to draw; NIL is the whole map.")
             (paired-comparison-lines (sample-outcomes (first samples))
                                      (sample-outcomes (first (last samples)))))))
 
+;;; Rates of success.
+
+(defun rate-table-lines (results)
+  "Return the lines of a table of the rates in RESULTS, with a column for each value of the last
+factor."
+  (let* ((samples (results-samples results))
+         (factors (results-factors results))
+         (values (remove-duplicates (mapcar (lambda (sample) (first (last (sample-texts sample))))
+                                            samples)
+                                    :test #'string= :from-end t)))
+    (append (list (format nil "| ~{`~A` | ~}~:{~A ~A |~:^ ~}" (butlast factors)
+                          (loop for value in values collect (cons value (last factors))))
+                  (format nil "|~{~*---|~}~{~*---|~}" (butlast factors) values))
+            (loop while samples
+                  collect (format nil "| ~{~A | ~}~{~A |~^ ~}"
+                                  (butlast (sample-texts (first samples)))
+                                  (loop for nil in values
+                                        collect (sample-rate-text (pop samples))))))))
+
+(defun sample-rate-text (sample)
+  (rate-text (count-if #'succeeded-p (sample-outcomes sample)) (length (sample-trials sample))))
+
 ;;; The command.
 
 (defun save-quick-figures ()
@@ -154,21 +180,33 @@ the map to draw; NIL is the whole map.")
   (save-picture-of-rollouts)
   (save-pictures-of-fetch))
 
-(defun save-figures ()
-  "Draw the floor to import, run the shipped experiments, put their tables into worlds/README.md,
-and save their pictures."
-  (save-quick-figures)
-  (let* ((page (worlds-path "README.md"))
-         (lines (replace-table (uiop:read-file-lines page :external-format :utf-8)
-                  'choosing-by-rollouts
-                  (choosing-lines (run-experiment 'choosing-by-rollouts)))))
-    (loop for (experiment . names) in *page-pictures*
-          do (let ((results (run-experiment experiment)))
-               (setf lines (replace-table lines experiment (results-lines results)))
-               (save-page-pictures experiment results names)))
-    (loop for (experiment condition trials part) in *trials-with-ways*
+(defun save-ways-pictures (experiment)
+  (loop for (name condition trials part) in *trials-with-ways*
+        when (eq name experiment)
           do (save-ways-picture experiment condition
                                 (merge-pathnames "ways.svg" (pictures-directory experiment))
-                                :trials trials :part part))
-    (with-open-file (out page :direction :output :if-exists :supersede :external-format :utf-8)
+                                :trials trials :part part)))
+
+(defun save-figure (experiment page function &rest pictures)
+  "Run EXPERIMENT, put the table that FUNCTION makes of the results into PAGE, and save PICTURES."
+  (let* ((results (run-experiment experiment))
+         (path (worlds-path page))
+         (lines (replace-table (uiop:read-file-lines path :external-format :utf-8) experiment
+                               (funcall function results))))
+    (when pictures (save-page-pictures experiment results pictures))
+    (save-ways-pictures experiment)
+    (with-open-file (out path :direction :output :if-exists :supersede :external-format :utf-8)
       (format out "~{~A~%~}" lines))))
+
+(defun save-figures (&rest names)
+  "Run the experiments with NAMES, strings; without NAMES, run all in *FIGURES*, draw the floor to
+import, and save the other pictures. Put tables into the pages, and save the pictures."
+  (dolist (name names)
+    (unless (member name *figures* :key #'first :test #'string-equal)
+      (ars-magna.base:reject-argument 'save-figures "name" name
+                                      (format nil "one of ~{~(~A~)~^, ~}"
+                                              (mapcar #'first *figures*)))))
+  (unless names (save-quick-figures))
+  (dolist (figure *figures*)
+    (when (or (null names) (member (first figure) names :test #'string-equal))
+      (apply #'save-figure figure))))

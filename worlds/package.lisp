@@ -52,7 +52,7 @@
            #:return-by-views)
   ;; experiments
   (:export #:fetching-against-motion-noise #:fetching-against-blindness-and-kicks
-           #:three-ways-of-searching #:recognising-places)
+           #:three-ways-of-searching #:recognising-places #:returning-by-views)
   ;; choosing
   (:export #:leave-trolleys #:forecasts* #:choose-way #:carry-messages #:choosing-by-rollouts)
   ;; an errand with continuations
