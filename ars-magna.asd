@@ -280,7 +280,8 @@
   :components
   ((:module "rpl/rap" :serial t
     :components ((:file "package") (:file "memory") (:file "queries") (:file "reading")
-                 (:file "task-nets") (:file "define-rap") (:file "agenda")))))
+                 (:file "task-nets") (:file "trying")
+                 (:file "define-rap") (:file "agenda")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."
@@ -446,7 +447,7 @@
                  (:file "thinking-experiments") (:file "tileworld-bare") (:file "testbeds")
                  (:file "pursuit-bare") (:file "testbeds-pursuit")
                  (:file "testbeds-tiles") (:file "testbeds-agents") (:file "testbeds-shell")
-                 (:file "testbeds-trucks") (:file "rap") (:file "rap-random")
+                 (:file "testbeds-trucks") (:file "rap") (:file "rap-random") (:file "rap-seeing")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

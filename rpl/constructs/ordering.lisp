@@ -184,6 +184,13 @@ EARLIER is true. WATCHER waits for EARLIER."
 
 ;;; The constructs. MEMORY is the value of the last step, and the orders.
 
+;; The variables around it show in stacks; the tasks of its tags show as its parts.
+(defun named-order-code (code inner scope)
+  "Return CODE, whose node runs in the scope INNER, so that its node has the names of SCOPE."
+  `(set-node-names ,code ',(if (eq inner scope)
+                               (names-by-level scope)
+                               (cons '() (names-by-level scope)))))
+
 (defun end-orders (memory)
   (when memory (mapc #'remove-order (shiftf (cdr memory) '()))))
 
@@ -197,7 +204,8 @@ of the tags in STEPS are errors when the plan is defined; other cycles are repor
 Return the first value of the last step (from CRAM, except for the value)."
   (:parts (branches simple-vector (branches-code steps (single-value-scope scope)))
           (pairs function (orders-lambda steps constraints form scope)))
-  (:code (with-tags-code form (tags-in steps) scope #'build))
+  (:code (with-tags-code form (tags-in steps) scope
+                         (lambda (inner) (named-order-code (build inner) inner scope))))
   (:steps
    (begin
     (next over)

@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.language)
 
 (export '(condition-lambda awaited-lambda value-lambda define-plan-form code-with-hoisted-parts
-                           plan-code
+                           plan-code set-node-names
           leaf-code-or-reject suspends-p))
 
 ;;; Where the plan's own text says so, conditions read fluents by value and operators are lifted.
@@ -262,6 +262,7 @@ bound to variables before FORM. So are all elements to their left, to keep the o
         code)))
 
 (defun set-node-names (node names)
+  "Let NODE, unless it is a leaf, have NAMES: see NODE-NAMES. Return NODE."
   (unless (leaf-p node)
     (setf (node-names node) names))
   node)

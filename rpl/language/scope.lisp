@@ -3,7 +3,7 @@
 (in-package :ars-magna.rpl.language)
 
 (export '(check-variables untyped-parameters inner-scope scope single-value-scope
-          variable-scope scope-variables scope))
+          variable-scope scope-variables names-by-level scope))
 
 (defun invalid-variable-text (name environment)
   "Return a text which says why NAME cannot be a variable of any kind in ENVIRONMENT; or NIL."

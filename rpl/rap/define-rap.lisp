@@ -5,23 +5,6 @@
 ;;; A RAP is a plan procedure of the name of its index. So steps of task nets are calls of plans,
 ;;; and any plan can be a step.
 
-(define-condition rap-failed (plan-failure)
-  ((name :initarg :name :initform nil :reader rap-failed-name)
-   (tries :initarg :tries :initform '() :reader rap-failed-tries))
-  (:documentation "A RAP has no method left to try."))
-
-(setf (documentation 'rap-failed-name 'function)
-      "Return the name of the RAP that failed."
-      (documentation 'rap-failed-tries 'function)
-      "Return a list of what the RAP tried, the newest first: lists (method values text). METHOD is
-the name of the method, VALUES those of its variables, TEXT why the try did not help.")
-
-(defmethod write-failure ((failure rap-failed) stream)
-  (format stream "~(~A~): ~:[no method is applicable~;~:*~{~A~^; ~}~]"
-          (rap-failed-name failure)
-          (loop for (method values text) in (reverse (rap-failed-tries failure))
-                collect (format nil "~A: ~A" (data-text (cons method values)) text))))
-
 (defparameter *net-tries* 3
   "How often a step is repeated whose annotation (fact for step) does not hold.")
 
@@ -36,8 +19,11 @@ it.")
 
 (defun holds-p (query) (and (solve query '()) t))
 
+(defun over-word-p (status)
+  (and (member status '(:succeeded :failed :evaporated)) t))
+
 (defun over-p (task)
-  (member (fluent-value (task-status task)) '(:succeeded :failed :evaporated)))
+  (over-word-p (fluent-value (task-status task))))
 
 (defun fail-by-event (query)
   (fail :class :rap-event :event query))
@@ -52,28 +38,6 @@ it.")
     (cdr (or (assoc name (rest table) :test #'value-equal)
              (first (push (cons name (make-valve name)) (rest table)))))))
 
-(defun tries-of (candidate tries)
-  (count candidate tries :test #'value-equal
-                         :key (lambda (try) (list (first try) (second try)))))
-
-(defun choose-method (methods tries limit)
-  "Return a candidate, (method values), with the fewest TRIES: the first among equals. Return NIL if
-all that apply were tried LIMIT times. METHODS are lists (name query variable...)."
-  (let ((best nil) (fewest limit))
-    (loop for (name query . variables) in methods
-          do (dolist (bindings (if query (solve query '()) (list '())))
-               (let* ((candidate (list name (instance variables bindings)))
-                      (count (tries-of candidate tries)))
-                 (when (< count fewest) (setf best candidate fewest count)))))
-    best))
-
-(defun failure-of-method (failure)
-  "Return a text about FAILURE, of a method. An error of Lisp is no failure of a method: fail
-again."
-  (if (typep failure 'lisp-failure)
-      (fail failure)
-      (failure-text failure)))
-
 ;;; The plan text.
 
 (defun method-row-code (method known)
@@ -86,12 +50,13 @@ again."
 (defun with-resources-code (resources body)
   "Return plan text that runs the forms BODY while their task owns RESOURCES, names or variables."
   (if resources
-      `(with-valves (,@(loop for resource in resources
-                             collect `(resource-valve ,(if (variable-p resource)
-                                                           (variable-of resource)
-                                                           `',resource)))
-                     :priority goal-priority*)
-         ,@body)
+      `(shown-as (resources ,@resources)
+         (with-valves (,@(loop for resource in resources
+                               collect `(resource-valve ,(if (variable-p resource)
+                                                             (variable-of resource)
+                                                             `',resource)))
+                       :priority goal-priority*)
+           ,@body))
       `(seq ,@body)))
 
 (defun sharing-code (body)
@@ -111,16 +76,18 @@ values of FORMS."
   (sharing-code (with-resources-code names forms)))
 
 (defun method-code (method results)
-  "Return a clause of CASE that runs METHOD with the values in the variable CHOSEN. Variables that
-are RESULTS of the RAP are around."
-  (let ((body (with-resources-code (rap-method-resources method) (rap-method-body method)))
-        (variables (rap-method-variables method)))
-    `(,(rap-method-name method)
-      (let ,(loop for variable in (set-difference variables results)
-                  collect `(,variable (nth ,(position variable variables) chosen)))
-        ,@(loop for variable in (intersection variables results)
-                collect `(setf ,variable (nth ,(position variable variables) chosen)))
-        ,body))))
+  "Return the element of a form RAP-TRIES for METHOD. Variables that are RESULTS of the RAP are
+around; they get their values first."
+  (let* ((variables (rap-method-variables method))
+         (bound (loop for variable in variables
+                      collect (if (member variable results)
+                                  (make-symbol (symbol-name variable))
+                                  variable))))
+    `(,(rap-method-name method) ,variables ,bound
+      ,@(loop for variable in variables
+              for inner in bound
+              unless (eq variable inner) collect `(setf ,variable ,inner))
+      ,(with-resources-code (rap-method-resources method) (rap-method-body method)))))
 
 (defun value-code (succeed results known)
   "Return a form for the values of a RAP that has succeeded: T, or those of RESULTS, Lisp
@@ -135,25 +102,12 @@ variables."
                                  ,(query-code succeed known))))))
         (t `(values ,@results))))
 
-(defun loop-code (name methods succeed results known limit)
+(defun tries-code (call methods succeed results known limit)
   "Return plan text that tries METHODS until SUCCEED, a query or NIL, holds."
-  `(prog ((tries '()) (choice nil) (chosen '()))
-    again
-      ,@(when succeed `((when (holds-p ,(query-code succeed known)) (return))))
-      (setf choice (choose-method (list ,@(loop for method in methods
-                                                collect (method-row-code method known)))
-                                  tries ,limit)
-            chosen (second choice))
-      (unless choice (fail (make-condition 'rap-failed :name ',name :tries tries)))
-      (push (append choice
-                    (list (handle-failure ((t (failure) (return (failure-of-method failure))))
-                            (case (first choice)
-                              ,@(loop for method in methods
-                                      collect (method-code method results)))
-                            ,(if succeed "its success test does not hold" :done))))
-            tries)
-      ,@(unless succeed '((when (eq :done (third (first tries))) (return))))
-      (go again)))
+  `(rap-tries (,(first call) ,@known) ,limit
+              ,(and succeed `(holds-p ,(query-code succeed known)))
+              (list ,@(loop for method in methods collect (method-row-code method known)))
+              ,@(loop for method in methods collect (method-code method results))))
 
 (defun rap-code (index documentation clauses)
   (multiple-value-bind (call results) (split-result index)
@@ -167,10 +121,11 @@ variables."
          ,@(and documentation (list documentation))
          (let ,results
            (declare (ignorable ,@known))
-           ,(sharing-code
-             (with-resources-code (only-clause 'resources clauses)
-                                  (list (loop-code (first call) methods succeed results known
-                                                   (attempts-of clauses)))))
+           (shown-as ,call
+             ,(sharing-code
+               (with-resources-code (only-clause 'resources clauses)
+                                    (list (tries-code call methods succeed results known
+                                                      (attempts-of clauses))))))
            ,(value-code succeed results known))))))
 
 (defun check-results (results succeed)

@@ -5,11 +5,16 @@
 success test holds, a memory of facts with rules, and an agenda of goals with priorities and
 deadlines. Use this package together with ARS and NISP.")
   (:import-from :ars-magna.basics #:reject-argument #:reject-use #:value-equal #:safe-text
-                #:proper-list-p #:starts-with-subseq #:define-record)
+                #:proper-list-p #:starts-with-subseq #:define-record #:cut)
   (:import-from :ars-magna.definitions #:reject-clause #:definition-title #:define-registry
                 #:register)
-  (:import-from :ars-magna.rpl.language #:variable-of)
-  (:import-from :ars-magna.rpl.tasks #:failure-text #:write-failure)
+  (:import-from :ars-magna.rpl.language #:variable-of #:define-expression #:define-plan-form
+                #:next #:at-once #:value #:child #:how #:result #:environment #:memory
+                #:block-code #:body-code #:plan-code #:value-lambda #:variable-scope
+                #:single-value-scope #:note-expansion #:form-as-written)
+  (:import-from :ars-magna.rpl.tasks #:failure-text #:write-failure #:node #:node-form #:frame
+                #:frame-data #:frame-up #:current-form #:make-task #:spawn #:park #:+parked+
+                #:task-level #:end-with-value #:end-with-signal)
   (:import-from :ars-magna.nisp #:matchvar-p #:matchvar-name)
   (:export #:memory-add #:memory-delete #:memory-set #:memory-holds-p #:memory-query #:memory-tick
            #:main-memory* #:dump-memory #:reset-memory #:define-memory-rule

@@ -88,6 +88,10 @@
   (remove-if-not (lambda (annotation) (member (annotation-kind annotation) kinds))
                  (net-step-annotations step)))
 
+(defun over-code (tag)
+  "Return a form for a fluent that is true when the step TAG is over."
+  `(fl-funcall 'over-word-p (task-status ,tag)))
+
 (defun begin-variable (tag) (intern (format nil "~A-BEGINS" tag)))
 
 (defun call-code (step known)
@@ -99,8 +103,9 @@ values."
                    (format nil "no ?~(~A~), which has no value: the index, the context or the ~
                                 result of a step must give it one"
                            argument)))
-    (let ((call (cons name (loop for argument in arguments
-                                 collect (pattern-code argument known))))
+    (let ((call `(shown-as ,(net-step-call step)
+                           (,name ,@(loop for argument in arguments
+                                          collect (pattern-code argument known)))))
           (results (net-step-results step)))
       (if results
           (let ((values (loop for variable in results collect (gensym (symbol-name variable)))))
@@ -122,7 +127,7 @@ values."
                                   (:fail (list `(seq ,wait (fail-by-event
                                                             ',(second annotation))))))))
                              (:until-start (list `(wait-for ,(begin-variable tag))))
-                             (:until-end (list `(wait-until (over-p ,tag))))))))
+                             (:until-end (list `(wait-for ,(over-code tag))))))))
     (if ends `(pursue ,(call-code step known) ,@ends) (call-code step known))))
 
 (defun conditions-code (step steps known)
@@ -182,6 +187,7 @@ RESULTS those of the results of the RAP."
       `(let (,@(set-difference given (append results known))
              ,@(loop for tag in begun
                      collect `(,(begin-variable tag) (state ',tag))))
-         (partial-order (,@(loop for step in steps
-                                 collect (step-code step steps (union given known) begun)))
-                        ,@(remove-duplicates (net-orders steps orders) :test #'equal))))))
+         (shown-as (task-net ,@forms)
+           (partial-order (,@(loop for step in steps
+                                   collect (step-code step steps (union given known) begun)))
+                          ,@(remove-duplicates (net-orders steps orders) :test #'equal)))))))

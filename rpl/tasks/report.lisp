@@ -172,8 +172,13 @@ any thread that lets plans react.")
          (list (task-name task) (task-serial task)))
         (t (task-name task))))
 
-(defun part-place (task)
+(defun readable-name (task)
+  "Return the name of TASK, or its text if the name is no symbol; NIL if TASK has none."
   (let ((name (task-name task)))
+    (if (symbolp name) name (task-label task))))
+
+(defun part-place (task)
+  (let ((name (readable-name task)))
     (cond ((null name) (task-index task))
           ((find name (remove task (task-children (task-parent task))) :key #'task-name)
            (list :tag name (task-index task)))
@@ -199,7 +204,7 @@ from the inside to the outside, and have the names of operators.)"
           (or (null (cddr step)) (eql (third step) (task-index task)))))
     ((cons symbol (cons integer null))
      (and (at-place-p task (first step)) (= (second step) (task-serial task))))
-    ((or symbol string) (and step (task-name task) (same-name-p step (task-name task))))))
+    ((or symbol string) (and step (task-name task) (same-name-p step (readable-name task))))))
 
 (addition find-task)
 (defun find-task (place &optional (within *runner*))

@@ -1,0 +1,168 @@
+;;;; trying.lisp -- how a RAP runs: it tries methods until its success test holds.
+
+(in-package :ars-rap)
+
+;;; Each try is a task of its own. Its name says which RAP it is of, which try, which method and
+;;; with which values. So all that shows tasks shows tries, and the steps of a task net as parts of
+;;; their try.
+
+(define-condition rap-failed (plan-failure)
+  ((call :initarg :call :initform '(nil) :reader rap-failed-call)
+   (tries :initarg :tries :initform '() :reader rap-failed-tries))
+  (:documentation "A RAP has no method left to try."))
+
+(defun rap-failed-name (failure)
+  "Return the name of the RAP that failed."
+  (first (rap-failed-call failure)))
+
+(setf (documentation 'rap-failed-tries 'function)
+      "Return a list of what the RAP tried, the newest first: lists (method values text). METHOD is
+the name of the method, VALUES those of its variables, TEXT why the try did not help.")
+
+(defmethod write-failure ((failure rap-failed) stream)
+  (format stream "~(~A~): ~:[no method is applicable~;~:*~{~A~^; ~}~]"
+          (rap-failed-name failure)
+          (loop for (method values text) in (reverse (rap-failed-tries failure))
+                collect (format nil "~A: ~A" (data-text (cons method values)) text))))
+
+;;; Tries.
+
+(defstruct (rap-try (:constructor make-rap-try (call number method variables values))
+                    (:copier nil))
+  "The name of the task of a try: try NUMBER of the RAP that was called by CALL, a list of its name
+and arguments, by METHOD with VALUES of VARIABLES."
+  (call '() :type list :read-only t)
+  (number 1 :type fixnum :read-only t)
+  (method nil :type symbol :read-only t)
+  (variables '() :type list :read-only t)
+  (values '() :type list :read-only t)
+  (text nil :type (or null string)))
+
+(defun call-text (call)
+  (format nil "~{~A~^ ~}" (mapcar #'data-text call)))
+
+(defun try-text (try)
+  "Return a text of TRY, such as \"bring cup table, try 2: by-hand (where sink)\"."
+  (or (rap-try-text try)
+      (setf (rap-try-text try)
+            (cut (format nil "~A, try ~D: ~(~A~)~@[ (~{~(~A~) ~A~^, ~})~]"
+                         (call-text (rap-try-call try)) (rap-try-number try) (rap-try-method try)
+                         (loop for variable in (rap-try-variables try)
+                               for value in (rap-try-values try)
+                               collect variable collect (data-text value)))
+                 120))))
+
+(defmethod print-object ((try rap-try) stream)
+  (write-string (try-text try) stream))
+
+(defstruct (rap-run (:constructor make-rap-run (call)) (:copier nil))
+  "One run of a RAP by CALL. TRIES are as RAP-FAILED-TRIES returns them; equal tries share a list.
+CHOICES is a list of lists (candidate count try) with the newest try of each candidate, a list
+(method values). CANDIDATE is the one that is being tried."
+  (call '() :type list :read-only t)
+  (number 0 :type fixnum)
+  (tries '() :type list)
+  (choices '() :type list)
+  (candidate nil :type list))
+
+(defun note-try (run text)
+  "Note in RUN that the candidate did not help, because of TEXT."
+  (let* ((candidate (rap-run-candidate run))
+         (choice (or (assoc candidate (rap-run-choices run) :test #'value-equal)
+                     (first (push (list candidate 0 nil) (rap-run-choices run))))))
+    (unless (and (third choice) (string= text (third (third choice))))
+      (setf (third choice) (list (first candidate) (second candidate) text)))
+    (incf (second choice))
+    (push (third choice) (rap-run-tries run))))
+
+(defun choose-method (rows run limit)
+  "Return a candidate, (method values), with the fewest tries in RUN: the first among equals. Return
+NIL if all that apply were tried LIMIT times. ROWS are lists (name query variable...)."
+  (let ((best nil) (fewest limit))
+    (loop for (name query . variables) in rows
+          do (dolist (bindings (if query (solve query '()) (list '())))
+               (let* ((candidate (list name (instance variables bindings)))
+                      (count (or (second (assoc candidate (rap-run-choices run)
+                                                :test #'value-equal))
+                                 0)))
+                 (when (< count fewest) (setf best candidate fewest count))
+                 (when (zerop fewest) (return-from choose-method best)))))
+    best))
+
+(defun name-of-try (run variables)
+  (destructuring-bind (method values) (rap-run-candidate run)
+    (make-rap-try (rap-run-call run) (incf (rap-run-number run)) method variables values)))
+
+(defun ends-rap-p (failure)
+  "True if FAILURE, of a method, ends the RAP: an error of Lisp is no failure of the method."
+  (typep failure 'lisp-failure))
+
+(defun start-try (run methods task environment)
+  "Start the candidate of RUN, one of METHODS, as a part of TASK. Return what a step returns."
+  (destructuring-bind (variables . body)
+      (rest (assoc (first (rap-run-candidate run)) methods :test #'eq))
+    (spawn task body (apply #'vector environment (second (rap-run-candidate run))) 0
+           (task-level task)
+           (make-task (name-of-try run variables) body))
+    (park task nil)
+    +parked+))
+
+(define-expression rap-tries
+  "Runs a RAP. The function CALL returns its name and arguments, DONE whether its success test holds
+(NIL if it has none), ROWS the rows for CHOOSE-METHOD. METHODS is a list of lists (name variables .
+node). LIMIT is the number of times that a candidate is tried."
+  (:parts (call function) (done (or null function)) (rows function) (limit integer) (methods list))
+  (:steps
+   (begin
+    (setf memory (make-rap-run (funcall call environment)))
+    (at-once choosing))
+   (trying
+    (cond ((or done (stringp value))
+           (note-try memory value)
+           (at-once choosing))
+          (t (values (frame-up frame) nil))))
+   (choosing
+    (cond ((and done (funcall done environment)) (values (frame-up frame) nil))
+          (t (setf (rap-run-candidate memory)
+                   (choose-method (funcall rows environment) memory limit))
+             (unless (rap-run-candidate memory)
+               (fail (make-condition 'rap-failed :call (rap-run-call memory)
+                                                 :tries (rap-run-tries memory))))
+             (next trying)
+             (start-try memory methods task environment)))))
+  (:child-ended
+   (ecase how
+     (:succeeded (end-with-value task (and done "its success test does not hold")))
+     (:evaporated (end-with-value task "it was ended"))
+     (:escaped (end-with-signal task result))
+     (:failed (if (ends-rap-p result)
+                  (end-with-signal task result)
+                  (end-with-value task (failure-text result)))))))
+
+(defmethod current-form ((node rap-tries) frame)
+  (if (frame-data frame)
+      (rap-run-call (frame-data frame))
+      (node-form node)))
+
+;;; The plan text of RAPs has two forms of its own.
+
+(defun method-node-code (method scope)
+  "Return code for an element of the slot METHODS. METHOD is a list (name variables bound form...);
+BOUND are the variables that FORMS see, in the order of VARIABLES."
+  (destructuring-bind (name variables bound . forms) method
+    `(list* ',name ',variables
+            ,(block-code nil (first forms) (variable-scope (single-value-scope scope) bound)
+                         (lambda (scope) (body-code forms scope))))))
+
+(define-plan-form rap-tries :must (call limit done rows &rest methods) (form scope)
+  `(make-rap-tries :form ',(form-as-written form)
+                   :call ,(value-lambda `(list ',(first call) ,@(rest call)) scope)
+                   :limit ,limit
+                   :done ,(and done (value-lambda done scope))
+                   :rows ,(value-lambda rows scope)
+                   :methods (list ,@(loop for method in methods
+                                          collect (method-node-code method scope)))))
+
+(define-plan-form shown-as :must (written form) (whole scope)
+  ;; A copy, because the text of the definition itself always shows as it is.
+  (plan-code (note-expansion (copy-list form) written) scope))

@@ -1,0 +1,105 @@
+;;;; rap-seeing.lisp -- how RAPs show in the tools that look at plans, and what they say.
+
+(in-package :ars-magna.tests.rap)
+
+(def-suite* ars-magna.tests::rap-seeing :in ars-magna.tests::ars-magna)
+
+(defun has (text where)
+  "True if TEXT is in WHERE, where blanks and line ends count as one blank."
+  (search text (format nil "~{~A~^ ~}"
+                       (remove "" (uiop:split-string where :separator '(#\Space #\Newline))
+                               :test #'string=))))
+
+;;; A kitchen.
+
+(define-rap (index (see-bring ?thing ?place))
+  (succeed (at ?thing ?place))
+  (resources arm)
+  (method by-hand
+    (context (at ?thing ?where))
+    (task-net (sequence (reach (see-go ?where))
+                        (grip (see-grip ?thing ?where))
+                        (leave (see-leave ?thing ?place)))))
+  (method ask (primitive (wait-time 3))))
+
+(define-rap (index (see-go ?place))
+  (method walk (primitive (wait-time 5))))
+
+(define-rap (index (see-grip ?thing ?place))
+  (attempts 1)
+  (method (primitive (wait-time 1)
+                     (when (memory-holds-p '(greasy)) (fail :class :slipped))
+                     (memory-delete `(at ,thing ,place)))))
+
+(define-rap (index (see-leave ?thing ?place))
+  (method (primitive (memory-add `(at ,thing ,place)))))
+
+(defmacro in-kitchen (&body body)
+  `(let ((*trace-plans* t))
+     (in-rap-run (memory-add '(at cup sink)) ,@body)))
+
+(defmacro printed (form)
+  "Return what FORM prints."
+  `(with-output-to-string (*standard-output*) ,form))
+
+(defun task-named (text)
+  "Return the innermost task whose name begins with TEXT."
+  (find-if (lambda (task) (eql 0 (search text (format nil "~(~A~)" (task-name task)))))
+           (reverse (tasks-now))))
+
+(defun tasks-now ()
+  (labels ((below (task) (cons task (mapcan #'below (task-children task)))))
+    (mapcan #'below (list (find-task '(see-bring) (rpl-runner))))))
+
+(test rap-seeing.a-try-shows-its-rap-method-values-and-steps
+  (in-kitchen
+    (begin-plan 'see-bring 'cup 'table)
+    (run-ticks 3)
+    (let ((tree (printed (print-plans))))
+      (is (has "see-bring (see-bring cup table)" tree) "~A" tree)
+      (is (has "see-bring cup table, try 1: by-hand (where sink) (task-net" tree))
+      (is (has "reach (see-go sink)" tree))
+      (is (has "see-go sink, try 1: walk (wait-time 5) waits for tick 6" tree))
+      (is (has "grip (see-grip ?thing ?where) waits for the end of reach" tree)))))
+
+(test rap-seeing.no-internal-forms-show
+  (in-kitchen
+    (begin-plan 'see-bring 'cup 'table)
+    (run-ticks 3)
+    (let ((tree (printed (print-plans *standard-output* t))))
+      (is (has "where = sink" tree))
+      (is (has "in (resources arm)" tree))
+      (loop for word in '("prog" "push" "handle-failure" "partial-order" "with-valves" "case"
+                          "choice" "shown-as" "#:" "rap-tries")
+            do (is (not (search word tree)) "~A: ~A" word tree)))))
+
+(test rap-seeing.why-names-the-try-that-a-step-is-part-of
+  (in-kitchen
+    (memory-add '(greasy))
+    (begin-plan 'see-bring 'cup 'table)
+    (run-ticks 8)
+    (let ((why (printed (why (task-named "see-bring cup")))))
+      (is (has "see-bring cup table, try 2: ask, was started at tick 7 as a part of task 1" why)
+          "~A" why))
+    (let ((why (printed (why (find-task '(see-bring) (rpl-runner))))))
+      (is (has "because its part 2, see-bring cup table, try 1: by-hand (where sink), failed" why)
+          "~A" why))))
+
+(test rap-seeing.tries-are-in-timelines
+  (in-kitchen
+    (memory-add '(greasy))
+    (begin-plan 'see-bring 'cup 'table)
+    (run-ticks 8)
+    (uiop:with-temporary-file (:pathname path :type "svg")
+      (save-plan-timeline path)
+      (let ((picture (uiop:read-file-string path)))
+        (is (has "see-bring cup table, try 1: by-hand (where sink), ticks 1 to 7, failed" picture))
+        (is (has "see-bring cup table, try 2: ask" picture))))))
+
+(test rap-seeing.places-of-tries-can-be-read-and-found
+  (in-kitchen
+    (begin-plan 'see-bring 'cup 'table)
+    (run-ticks 3)
+    (let* ((task (task-named "see-go sink")) (place (task-place task)))
+      (is (equal place (read-from-string (prin1-to-string place))))
+      (is (eq task (find-task place (rpl-runner)))))))
