@@ -103,3 +103,74 @@
     (let* ((task (task-named "see-go sink")) (place (task-place task)))
       (is (equal place (read-from-string (prin1-to-string place))))
       (is (eq task (find-task place (rpl-runner)))))))
+
+;;; Calls without end.
+
+(define-rap (index (see-self ?x)) (method (task-net (again (see-self ?x)))))
+(define-rap (index (see-first ?x)) (method (primitive (see-second x))) (method (primitive 1)))
+(define-rap (index (see-second ?x)) (attempts 9) (method (task-net (back (see-first ?x)))))
+(define-rap (index (see-down ?n))
+  (method bottom (context (= ?n 0)) (primitive (note-rap :bottom)))
+  (method deeper (context (test (plusp ?n))) (primitive (see-down (1- n)))))
+(define-rap (index (see-unload ?x))
+  (succeed (not (in ? ?x)))
+  (attempts 1)
+  (method (context (in ?thing ?x)) (primitive (memory-delete `(in ,thing ,x)) (see-unload x))))
+
+(test rap-seeing.a-rap-that-calls-itself-without-end-fails
+  (in-rap-run
+    (loop for (name told) in '((see-self "The RAP (see-self 1) calls itself")
+                               (see-first "1) calls itself with the same arguments"))
+          do (let ((failure (failure-of-run name 1)))
+               (is (eq :too-deep (failure-class failure)))
+               (is (search told (princ-to-string failure)) "~A" failure)))))
+
+(test rap-seeing.deep-recursion-works
+  "Up to the limit of plans, and with the same arguments if the memory changes."
+  (is (equal '((0 :bottom)) (rap-notes (is (eq t (run-plan 'see-down 900))))))
+  (in-rap-run
+    (let ((failure (failure-of-run 'see-down 2100)))
+      (is (eq :too-deep (failure-class failure)))
+      (is (not (search "itself" (princ-to-string failure)))))
+    (dotimes (i 20) (memory-add (list 'in i 'box)))
+    (is (eq t (run-plan 'see-unload 'box)))
+    (is (null main-memory*))))
+
+(define-rap (index (see-spin)) (succeed (never)) (attempts 1000000000) (method (primitive (fail))))
+
+(test rap-seeing.a-rap-that-tries-on-without-waiting-is-told
+  (let ((told (with-output-to-string (*error-output*)
+                (handler-bind ((warning (lambda (warning)
+                                          (format *error-output* "~A" warning)
+                                          (muffle-warning warning))))
+                  (in-rap-run (begin-plan 'see-spin) (run-ticks 1))))))
+    (is (has "1000000 steps without waiting, at (see-spin)" told) "~A" told)))
+
+;;; What failures say.
+
+(define-rap (index (see-slip ?x)) (attempts 3) (method try-it (primitive (fail :class :slipped))))
+(define-rap (index (see-fall ?x))
+  (method a (context (near ?y)) (task-net (slip (see-slip ?y))))
+  (method b (task-net (slip (see-slip ?x)))))
+(define-rap (index (see-crash ?x))
+  (method a (context (near ?y)) (task-net (fall (see-fall ?y))))
+  (method b (task-net (fall (see-fall ?x)))))
+
+(test rap-seeing.failures-count-equal-tries
+  (in-rap-run
+    (let ((failure (failure-of-run 'see-fall 'cup)))
+      (is (equal (format nil "(see-fall cup): (b), 2 times: (see-slip cup): (try-it), 3 times: ~
+                              Plan failure :SLIPPED")
+                 (princ-to-string failure)) "~A" failure)
+      (is (= 2 (length (rap-failed-tries failure)))))))
+
+(test rap-seeing.long-failures-keep-their-beginning-and-the-innermost-cause
+  (in-rap-run
+    (mapc #'memory-add '((near wall) (near edge) (near stairs)))
+    (let ((text (princ-to-string (failure-of-run 'see-crash 'cup))))
+      (is (<= (length text) 300))
+      (is (eql 0 (search "(see-crash cup): (a stairs), 2 times: (see-fall stairs)" text)) "~A" text)
+      (is (eql (- (length text) 21) (search "Plan failure :SLIPPED" text :from-end t)) "~A" text))
+    (install-goal '(see-crash cup))
+    (process-goal-agenda)
+    (is (> 400 (length (printed (dump-agenda)))))))

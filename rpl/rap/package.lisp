@@ -13,7 +13,8 @@ deadlines. Use this package together with ARS and NISP.")
                 #:block-code #:body-code #:plan-code #:value-lambda #:variable-scope
                 #:single-value-scope #:note-expansion #:form-as-written)
   (:import-from :ars-magna.rpl.tasks #:failure-text #:write-failure #:node #:node-form #:frame
-                #:frame-data #:frame-up #:current-form #:make-task #:spawn #:park #:+parked+
+                #:frame-data #:frame-up #:frames-around #:task-frame
+                #:failure-of #:current-form #:make-task #:spawn #:park #:+parked+
                 #:task-level #:end-with-value #:end-with-signal)
   (:import-from :ars-magna.nisp #:matchvar-p #:matchvar-name)
   (:export #:memory-add #:memory-delete #:memory-set #:memory-holds-p #:memory-query #:memory-tick

@@ -19,11 +19,64 @@
       "Return a list of what the RAP tried, the newest first: lists (method values text). METHOD is
 the name of the method, VALUES those of its variables, TEXT why the try did not help.")
 
+;;; Texts of tries contain the texts of the RAPs that they called, and so on. What is longer than
+;;; a limit is cut in its middle: it begins with the RAP and ends with the innermost cause.
+
+(defparameter *longest-note* 300 "The largest number of characters in the text of a failed RAP.")
+
+(defun cut-middle (text length)
+  (if (<= (length text) length)
+      text
+      (let ((half (floor (- length 5) 2)))
+        (format nil "~A ... ~A" (string-right-trim " " (subseq text 0 half))
+                (string-left-trim " " (subseq text (- (length text) half)))))))
+
+(defun try-note (try count)
+  "Return a text of COUNT tries that are equal to TRY, a list (method values text)."
+  (destructuring-bind (method values text) try
+    (format nil "~A~[~;~:;~:*, ~D times~]: ~A" (data-text (cons method values)) count text)))
+
+(defun counted (tries)
+  "Return lists (try count) of the different TRIES, in order."
+  (let ((counts '()))
+    (dolist (try tries (reverse counts))
+      (let ((known (assoc try counts :test #'equal)))
+        (if known (incf (second known)) (push (list try 1) counts))))))
+
 (defmethod write-failure ((failure rap-failed) stream)
-  (format stream "~(~A~): ~:[no method is applicable~;~:*~{~A~^; ~}~]"
-          (rap-failed-name failure)
-          (loop for (method values text) in (reverse (rap-failed-tries failure))
-                collect (format nil "~A: ~A" (data-text (cons method values)) text))))
+  (let ((call (data-text (rap-failed-call failure)))
+        (notes (loop for (try count) in (counted (reverse (rap-failed-tries failure)))
+                     collect (try-note try count))))
+    (write-string (cut-middle (format nil "~A: ~:[no method is applicable~;~:*~{~A~^; ~}~]"
+                                      call notes)
+                              *longest-note*)
+                  stream)))
+
+;;; Calls without end. Plans have a limit on how deep calls are in each other; a RAP that tried
+;;; again what is beyond it would try without end.
+
+(define-condition endless-rap (plan-failure)
+  ((call :initarg :call :reader endless-rap-call)
+   (depth :initarg :depth :reader endless-rap-depth))
+  (:documentation "A RAP has called itself with the same arguments, again and again."))
+
+(defmethod write-failure ((failure endless-rap) stream)
+  (format stream "The RAP ~A calls itself with the same arguments, until ~D calls are in each ~
+                  other; give it a success test or contexts that end this"
+          (data-text (endless-rap-call failure)) (endless-rap-depth failure)))
+
+(defun too-deep-p (failure)
+  (and (symbolp (failure-class failure))
+       (failure-class failure)
+       (string= 'too-deep (failure-class failure))))
+
+(defun ends-rap-p (failure)
+  "True if FAILURE, of a method, ends the RAP: an error of Lisp or a limit of plans."
+  (or (typep failure 'lisp-failure)
+      (and (symbolp (failure-class failure))
+           (failure-class failure)
+           (member (failure-class failure) '(too-deep too-many-tasks too-many-commands)
+                   :test #'string=))))
 
 ;;; Tries.
 
@@ -93,9 +146,21 @@ NIL if all that apply were tried LIMIT times. ROWS are lists (name query variabl
   (destructuring-bind (method values) (rap-run-candidate run)
     (make-rap-try (rap-run-call run) (incf (rap-run-number run)) method variables values)))
 
-(defun ends-rap-p (failure)
-  "True if FAILURE, of a method, ends the RAP: an error of Lisp is no failure of the method."
-  (typep failure 'lisp-failure))
+(defun explained (failure task call)
+  "Return FAILURE, or, if it is that calls are too deep, and TASK is of a RAP with CALL inside an
+equal one, a failure of the same class that says so."
+  (if (and (too-deep-p failure)
+           (not (typep failure 'endless-rap))
+           (< 1 (count call (rap-calls-around task) :test #'value-equal)))
+      (failure-of (make-condition 'endless-rap :class (failure-class failure) :call call
+                                               :depth (getf (failure-data failure) :depth)
+                                               :cause failure)
+                  task (task-frame task))
+      failure))
+
+(defun rap-calls-around (task)
+  (loop for frame in (frames-around task)
+        when (rap-run-p (frame-data frame)) collect (rap-run-call (frame-data frame))))
 
 (defun start-try (run methods task environment)
   "Start the candidate of RUN, one of METHODS, as a part of TASK. Return what a step returns."
@@ -136,7 +201,7 @@ node). LIMIT is the number of times that a candidate is tried."
      (:evaporated (end-with-value task "it was ended"))
      (:escaped (end-with-signal task result))
      (:failed (if (ends-rap-p result)
-                  (end-with-signal task result)
+                  (end-with-signal task (explained result task (rap-run-call memory)))
                   (end-with-value task (failure-text result)))))))
 
 (defmethod current-form ((node rap-tries) frame)
