@@ -448,6 +448,7 @@
                  (:file "pursuit-bare") (:file "testbeds-pursuit")
                  (:file "testbeds-tiles") (:file "testbeds-agents") (:file "testbeds-shell")
                  (:file "testbeds-trucks") (:file "rap") (:file "rap-random") (:file "rap-seeing")
+                 (:file "rap-definitions")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

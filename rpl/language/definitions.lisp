@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.language)
 
-(export '(split-documentation variable-of))
+(export '(split-documentation variable-of procedure-form check-plan-name))
 
 (defun procedure-scope-and-entry (parameters environment)
   "Return the scope of a procedure's body, and the lambda expression for the procedure's entry."
@@ -18,8 +18,12 @@
       (values (rest body) (first body))
       (values body nil)))
 
-(defun procedure-form (name parameters body environment)
-  (let* ((definition (definition-title "def-interp-proc" name))
+(defun procedure-form (name parameters body environment
+                       &optional (text `(def-interp-proc ,name ,parameters ,@body)))
+  "Return the form that defines the plan procedure NAME with PARAMETERS and BODY. ENVIRONMENT is the
+Lisp environment of the definition. TEXT is the definition as the user wrote it, (definer name
+form...). Signals MALFORMED-DEFINITION."
+  (let* ((definition (definition-title (first text) name))
          (parameters (untyped-parameters parameters (list* name parameters body) environment
                                          definition))
          (form (list* name parameters body)))
@@ -38,9 +42,10 @@
              (install-procedure ',name ',parameters ,documentation
                                 ,entry ,(procedure-body-code name form body scope)
                                 (lambda (&rest arguments) (reject-lisp-call ',name arguments))
-                                ',(source-of-current-form) '(def-interp-proc ,@form))))))))
+                                ',(source-of-current-form) ',text)))))))
 
 (defun check-plan-name (definition name)
+  "Signal MALFORMED-DEFINITION about DEFINITION unless users can define a plan with the name NAME."
   (unless (symbolp name) (reject-clause definition name "a symbol as the name"))
   (check-function-name definition name))
 

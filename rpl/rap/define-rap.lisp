@@ -109,30 +109,40 @@ variables."
               (list ,@(loop for method in methods collect (method-row-code method known)))
               ,@(loop for method in methods collect (method-code method results))))
 
-(defun rap-code (index documentation clauses)
+(defun rap-code (index documentation clauses environment)
   (multiple-value-bind (call results) (split-result index)
     (let* ((known (mapcar #'variable-of (rest call)))
            (methods (loop for clause in (clauses-named 'method clauses)
                           for number from 1
                           collect (parse-method clause number known results)))
            (succeed (query-clause 'succeed clauses)))
-      (check-results results succeed)
-      `(def-interp-proc ,(first call) ,known
-         ,@(and documentation (list documentation))
+      (check-results results succeed known)
+      (define-procedure-code
+       (first call) known
+       `(,@(and documentation (list documentation))
          (let ,results
            (declare (ignorable ,@known))
            (shown-as ,call
              ,(sharing-code
-               (with-resources-code (only-clause 'resources clauses)
+               (with-resources-code (checked-resources clauses known)
                                     (list (tries-code call methods succeed results known
                                                       (attempts-of clauses))))))
-           ,(value-code succeed results known))))))
+           ,(value-code succeed results known)))
+       clauses environment))))
 
-(defun check-results (results succeed)
+(defun define-procedure-code (name parameters body clauses environment)
+  "Return the form that defines the plan procedure of the RAP NAME, whose text is CLAUSES."
+  (check-plan-name *rap-title* name)
+  (let ((text `(define-rap ,name ,@clauses)))
+    (call-with-definition text (lambda ()
+                                 (procedure-form name parameters body environment text)))))
+
+(defun check-results (results succeed known)
   (when succeed
-    (let ((missing (set-difference results (code-variables succeed))))
+    (let ((missing (set-difference results (variables-after succeed known))))
       (when missing
-        (reject-part succeed (format nil "a query with the result~P ~{?~(~A~)~^, ~}"
+        (reject-part succeed (format nil "a query that gives the result~P ~{?~(~A~)~^, ~} a value ~
+                                          whenever it holds"
                                      (length missing) missing))))))
 
 (defun attempts-of (clauses)
@@ -150,7 +160,7 @@ variables."
     (unless (= (length variables) (length (code-variables variables)))
       (reject-part index "different variables"))))
 
-(defmacro define-rap (&body clauses)
+(define-user-macro define-rap (&body clauses &environment environment)
   "Define a RAP, a reactive action package: a plan procedure that tries methods until its success
 test holds. A string may precede the clauses. They are
   (index (name ?argument... [=> ?result...]))   the name of the plan, its arguments and its values
@@ -190,4 +200,4 @@ Return the name. Signals MALFORMED-DEFINITION. (From RAP, after Firby 1989 and 1
     (check-index (second index))
     (unless (clauses-named 'method clauses)
       (reject-part index "at least one clause (method ...)"))
-    (rap-code (second index) documentation clauses)))
+    (rap-code (second index) documentation clauses environment)))

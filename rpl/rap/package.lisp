@@ -7,8 +7,9 @@ deadlines. Use this package together with ARS and NISP.")
   (:import-from :ars-magna.basics #:reject-argument #:reject-use #:value-equal #:safe-text
                 #:proper-list-p #:starts-with-subseq #:define-record #:cut)
   (:import-from :ars-magna.definitions #:reject-clause #:definition-title #:define-registry
-                #:register)
-  (:import-from :ars-magna.rpl.language #:variable-of #:define-expression #:define-plan-form
+                #:register #:define-user-macro #:call-with-definition)
+  (:import-from :ars-magna.rpl.language #:variable-of #:procedure-form #:check-plan-name
+                #:define-expression #:define-plan-form
                 #:next #:at-once #:value #:child #:how #:result #:environment #:memory
                 #:block-code #:body-code #:plan-code #:value-lambda #:variable-scope
                 #:single-value-scope #:note-expansion #:form-as-written)

@@ -42,17 +42,44 @@
          `(cons ,(pattern-code (car pattern) known) ,(pattern-code (cdr pattern) known)))
         (t `',pattern)))
 
-(defun query-code (query known)
+(defun query-code (query known &optional (bound known) (whole query))
   "Return a form whose value is QUERY with the values of the Lisp variables KNOWN, and with
-functions in place of the forms of its tests."
-  (case (query-operator query)
-    ((and or not) `(list ',(query-operator query)
-                         ,@(loop for part in (rest query) collect (query-code part known))))
-    (test (let ((variables (set-difference (marked-variables query) known :key #'code-variable)))
-            `(list* 'test (lambda ,(mapcar #'code-variable variables)
-                            ,(code-with-variables (second query)))
-                    ',variables)))
-    (t (pattern-code query known))))
+functions in place of the forms of its tests. BOUND are the variables that have values before QUERY,
+which is a part of the query WHOLE."
+  (flet ((part-code (part) (query-code part known bound whole)))
+    (case (query-operator query)
+      (and `(list 'and ,@(loop for part in (rest query)
+                               collect (part-code part)
+                               do (setf bound (variables-after part bound)))))
+      ((or not) `(list ',(query-operator query) ,@(mapcar #'part-code (rest query))))
+      (test (test-code (second query) known bound whole))
+      (t (pattern-code query known)))))
+
+(defun test-code (form known bound whole)
+  "Return a form for (test FORM) in the query WHOLE: see QUERY-CODE."
+  (let ((arguments (loop for marked in (marked-variables whole)
+                         for variable = (code-variable marked)
+                         when (and (member variable bound)
+                                   (not (member variable known))
+                                   (mentions-variable-p form variable))
+                           collect marked)))
+    `(list* 'test (lambda ,(mapcar #'code-variable arguments)
+                    ,@(rejecting-code (set-difference (code-variables whole) bound) whole
+                                      (list (code-with-variables form))))
+            ',arguments)))
+
+(defun mentions-variable-p (form variable)
+  (cond ((quoted-p form) nil)
+        ((consp form) (or (mentions-variable-p (car form) variable)
+                          (mentions-variable-p (cdr form) variable)))
+        ((variable-p form) (and (not (anonymous-p form)) (eq variable (variable-of form))))
+        (t (eq variable form))))
+
+(defun unquoted (forms)
+  "Return the parts of FORMS, code, that are not quoted data."
+  (cond ((quoted-p forms) nil)
+        ((consp forms) (cons (unquoted (car forms)) (unquoted (cdr forms))))
+        (t forms)))
 
 (defun code-variable (variable)
   (if (variable-p variable) (variable-of variable) variable))
@@ -69,6 +96,62 @@ functions in place of the forms of its tests."
 (defun check-rap-query (query)
   (unless (query-valid-p query :tests-too t)
     (reject-part query (format nil "~A, or (test form)" *query-syntax*))))
+
+;;; Which variables have values. A query that holds gives values to those of its patterns; but one
+;;; inside (not ...) gives none, and (or ...) only to those that are in all its branches.
+
+(defun check-values (query part bound)
+  "Signal an error about QUERY unless all variables in PART are among BOUND, Lisp variables."
+  (let ((missing (set-difference (code-variables part) bound)))
+    (when missing
+      (reject-part query (format nil "~{?~(~A~)~^, ~} with a value: put the pattern that gives it ~
+                                      one before this query"
+                                 missing)))))
+
+(defun variables-after (query bound)
+  "Return the list of BOUND, Lisp variables that have values, and those to which QUERY gives values.
+Signal an error if a comparison or test in QUERY uses a variable before it has a value."
+  (case (query-operator query)
+    ((nil) (union bound (code-variables query)))
+    (and (dolist (part (rest query) bound) (setf bound (variables-after part bound))))
+    (or (if (rest query)
+            (reduce #'intersection
+                    (loop for part in (rest query) collect (variables-after part bound)))
+            bound))
+    (not (variables-after (second query) bound)
+     bound)
+    (within (check-values query (second query) bound)
+     (union bound (code-variables (third query))))
+    (test (check-values query (unquoted (rest query)) bound)
+     bound)
+    (= (equal-variables-after query bound))
+    (t (check-values query (rest query) bound)
+     bound)))
+
+(defun equal-variables-after (query bound)
+  "Do as VARIABLES-AFTER for QUERY, (= a b): a variable gets the value of the other side."
+  (destructuring-bind (a b) (rest query)
+    (flet ((free-p (part)
+             (and (variable-p part) (not (member (variable-of part) bound)))))
+      (cond ((free-p a) (check-values query b bound))
+            ((free-p b) (check-values query a bound))
+            (t (check-values query (list a b) bound)))
+      (union bound (code-variables (rest query))))))
+
+(defmacro variable-without-value (title query name)
+  "Signal an error: the definition TITLE uses the variable NAME, to which QUERY gives no value."
+  (reject-clause title query (format nil "a query that gives ?~(~A~) a value before it is used; ~
+                                          inside (not ...), or in only some branches of (or ~
+                                          ...), it gets none" name)))
+
+(defun rejecting-code (names query forms)
+  "Return FORMS, code, in which the use of a variable NAMES is an error about QUERY."
+  (if names
+      `((symbol-macrolet ,(loop for name in names
+                                collect `(,name (variable-without-value ,*rap-title* ,query
+                                                                        ,name)))
+          ,@forms))
+      forms))
 
 ;;; Clauses.
 
@@ -112,23 +195,42 @@ list of the variables of its results."
   (body '() :read-only t)
   (variables '() :read-only t))
 
+(defun body-clause (clauses method)
+  "Return the clause TASK-NET or PRIMITIVE among CLAUSES, those of the clause METHOD."
+  (let ((bodies (append (clauses-named 'task-net clauses) (clauses-named 'primitive clauses))))
+    (unless (= 1 (length bodies))
+      (reject-part method "either a clause (task-net step...) or a clause (primitive form...)"))
+    (unless (rest (first bodies))
+      (reject-part method (format nil "at least one ~:[form~;step~] in ~(~A~)"
+                                  (clauses-named 'task-net clauses) (first bodies))))
+    (first bodies)))
+
+(defun checked-resources (clauses known)
+  "Return the names and variables in the clause RESOURCES among CLAUSES. KNOWN have values."
+  (let ((resources (only-clause 'resources clauses)))
+    (dolist (resource resources resources)
+      (unless (and resource (symbolp resource)
+                   (or (not (variable-p resource)) (member (variable-of resource) known)))
+        (reject-part (first (clauses-named 'resources clauses))
+                     "names, or variables such as ?x that have values")))))
+
 (defun parse-method (clause number known results)
   "Return the method of CLAUSE, (method [name] clause...). KNOWN are the Lisp variables of the
 index, RESULTS those of its results."
   (let* ((name (and (symbolp (second clause)) (second clause)))
          (clauses (nthcdr (if name 2 1) clause)))
     (check-clause-names clauses '(context resources task-net primitive))
-    (let* ((context (query-clause 'context clauses))
-           (net (only-clause 'task-net clauses))
-           (primitive (only-clause 'primitive clauses))
-           (variables (reverse (set-difference (code-variables context) known))))
-      (unless (if net (null primitive) primitive)
-        (reject-part clause "either a clause (task-net step...) or a clause (primitive form...)"))
+    (let* ((body (body-clause clauses clause))
+           (context (query-clause 'context clauses))
+           (all (set-difference (code-variables context) known))
+           (bound (if context (variables-after context known) known))
+           (variables (reverse (intersection all bound)))
+           (unbound (set-difference all (append bound results))))
       (make-rap-method
        :name (or name (intern (format nil "METHOD-~D" number)))
        :context context
-       :resources (only-clause 'resources clauses)
+       :resources (checked-resources clauses bound)
        :variables variables
-       :body (if net
-                 (list (task-net-code net (append variables known) results))
-                 (code-with-variables primitive))))))
+       :body (if (string= 'task-net (first body))
+                 (list (task-net-code body (append variables known) results))
+                 (rejecting-code unbound context (code-with-variables (rest body))))))))

@@ -101,7 +101,8 @@ values."
     (dolist (argument (set-difference (code-variables arguments) known))
       (reject-part (net-step-call step)
                    (format nil "no ?~(~A~), which has no value: the index, the context or the ~
-                                result of a step must give it one"
+                                result of a step must give it one; (not ...), or only some ~
+                                branches of (or ...), give none"
                            argument)))
     (let ((call `(shown-as ,(net-step-call step)
                            (,name ,@(loop for argument in arguments
@@ -130,24 +131,30 @@ values."
                              (:until-end (list `(wait-for ,(over-code tag))))))))
     (if ends `(pursue ,(call-code step known) ,@ends) (call-code step known))))
 
+(defun fact-code (annotation other known)
+  "Return plan text that repeats OTHER, a step, until the fact of its ANNOTATION holds."
+  (let ((query (query-code (first annotation) known)))
+    `(seq (n-times *net-tries* until (holds-p ,query) ,(call-code other known))
+          (check-happened (holds-p ,query) ',(first annotation)))))
+
+(defun event-code (annotation other known)
+  "Return plan text that waits until OTHER, a step, has begun and the query of ANNOTATION holds."
+  (let ((query (query-code (second annotation) known)) (tag (net-step-tag other)))
+    `(seq (wait-for (or ,(begin-variable tag) ,(over-code tag)))
+          (wait-until (or (holds-p ,query) (over-p ,tag)))
+          (check-happened (holds-p ,query) ',(second annotation)))))
+
 (defun conditions-code (step steps known)
   "Return plan text that waits for what other STEPS make true for STEP."
   (loop for other in steps
         append (loop for annotation in (annotations-of other :fact :wait-for)
                      when (eq (net-step-tag step) (first (last annotation)))
-                       collect (ecase (annotation-kind annotation)
-                                 (:fact
-                                  (let ((query (query-code (first annotation) known)))
-                                    `(seq (n-times *net-tries* until (holds-p ,query)
-                                            ,(call-code other known))
-                                          (check-happened (holds-p ,query)
-                                                          ',(first annotation)))))
-                                 (:wait-for
-                                  (let ((query (query-code (second annotation) known)))
-                                    `(seq (wait-until (or (holds-p ,query)
-                                                          (over-p ,(net-step-tag other))))
-                                          (check-happened (holds-p ,query)
-                                                          ',(second annotation)))))))))
+                       collect `(shown-as ,annotation
+                                  ,(if (eq :fact (annotation-kind annotation))
+                                       (fact-code annotation other known)
+                                       (event-code annotation other known))))))
+
+;;; Orders.
 
 (defun net-orders (steps orders)
   "Return the constraints (:order a b) of STEPS, and those of ORDERS that no other kind replaces."
@@ -160,13 +167,93 @@ values."
                              :key (lambda (annotation) (first (last annotation))))
                   collect `(:order ,a ,b))))
 
+(defun queries-for (step steps)
+  "Return the queries that STEP evaluates: its own, and those of other STEPS that are for it."
+  (append (mapcar #'second (annotations-to step '(:succeed :fail)))
+          (loop for other in steps
+                append (loop for annotation in (annotations-to other (list (net-step-tag step)))
+                             collect (case (annotation-kind annotation)
+                                       (:fact (first annotation))
+                                       (:wait-for (second annotation)))))))
+
+(defun annotations-to (step tags)
+  (remove-if-not (lambda (annotation) (member (first (last annotation)) tags))
+                 (net-step-annotations step)))
+
+(defun precedes-p (a b orders)
+  "True if the step A comes before the step B by ORDERS, a list of (:order a b)."
+  (loop for open = (list a) then (set-difference (union open more) '())
+        for more = (loop for (nil earlier later) in orders
+                         when (and (member earlier open) (not (member later open)))
+                           collect later)
+        thereis (member b more)
+        while more))
+
+(defun giver-tags (variable user steps orders known)
+  "Return the tags of the STEPS that must give VARIABLE a result before USER uses it: not of those
+after USER by ORDERS, unless VARIABLE has no other value. KNOWN variables have one."
+  (let* ((tag (net-step-tag user))
+         (givers (loop for step in steps
+                       when (and (not (eq step user)) (member variable (net-step-results step)))
+                         collect (net-step-tag step)))
+         (others (remove-if (lambda (giver) (precedes-p tag giver orders)) givers)))
+    (if (or others (member variable known)) others givers)))
+
+(defun value-orders (steps orders known)
+  "Return a list of (:order a b) by which a step that uses a result comes after the step that gives
+it."
+  (loop for user in steps
+        append (loop for variable in (code-variables (cons (rest (net-step-call user))
+                                                           (queries-for user steps)))
+                     append (loop for giver in (giver-tags variable user steps orders known)
+                                  collect `(:order ,giver ,(net-step-tag user))))))
+
+(defun net-precedences (steps orders)
+  "Return a list of pairs of events, each (:start tag) or (:end tag): the first precedes the other."
+  (append (loop for step in steps
+                for tag = (net-step-tag step)
+                collect `((:start ,tag) (:end ,tag))
+                append (loop for annotation in (annotations-of step :wait-for)
+                             for other = (first (last annotation))
+                             unless (keywordp other)
+                               collect `((:start ,tag) (:start ,other))))
+          (loop for (nil a b) in orders collect `((:end ,a) (:start ,b)))))
+
+(defun circle-in (precedences)
+  "Return those of PRECEDENCES that are in circles, or between circles."
+  (loop for left = (remove-if-not (lambda (pair)
+                                    (and (find (first pair) precedences :key #'second
+                                                                        :test #'equal)
+                                         (find (second pair) precedences :key #'first
+                                                                         :test #'equal)))
+                                  precedences)
+        until (= (length left) (length precedences))
+        do (setf precedences left)
+        finally (return left)))
+
+(defun check-circles (clause steps orders)
+  "Signal an error about CLAUSE, a task net, if some of its STEPS could never begin."
+  (let* ((circle (circle-in (net-precedences steps orders)))
+         (tags (loop for step in steps
+                     when (find (net-step-tag step) circle :key #'cadar)
+                       collect (net-step-tag step))))
+    (when tags
+      (reject-part clause
+                   (format nil "orders without a circle: the steps ~{~(~A~)~#[~; and ~:;, ~]~} ~
+                                could never begin, because each waits for another, as a step ~
+                                that uses a result waits for the step that gives it" tags)))))
+
 (defun step-results (steps)
   (remove-duplicates (loop for step in steps append (net-step-results step))))
 
 (defun tags-awaited (steps)
-  "Return the tags of STEPS whose start ends another step."
-  (remove-duplicates (loop for step in steps
-                           append (mapcar #'second (annotations-of step :until-start)))))
+  "Return the tags of STEPS whose start begins or ends another step."
+  (remove-duplicates
+   (loop for step in steps
+         append (mapcar #'second (annotations-of step :until-start))
+         when (remove-if #'keywordp (annotations-of step :wait-for)
+                         :key (lambda (annotation) (first (last annotation))))
+           collect (net-step-tag step))))
 
 (defun step-code (step steps known begun)
   "Return a branch of a PARTIAL-ORDER that runs STEP, one of STEPS. BEGUN are the tags whose start
@@ -177,17 +264,32 @@ others wait for."
        ,@(when (member tag begun) `((set-value ,(begin-variable tag) t)))
        ,(watched-code step known))))
 
-(defun task-net-code (forms known results)
-  "Return the plan text of the task net FORMS. KNOWN are the Lisp variables that have values,
+(defun checked-orders (clause steps orders known)
+  "Return the constraints (:order a b) of STEPS, those of the task net CLAUSE, with ORDERS."
+  (let* ((explicit (net-orders steps orders))
+         (all (remove-duplicates (append explicit (value-orders steps explicit known))
+                                 :test #'equal)))
+    (check-circles clause steps all)
+    all))
+
+(defun check-queries (steps known)
+  (dolist (step steps)
+    (dolist (query (queries-for step steps))
+      (when query (variables-after query known)))))
+
+(defun task-net-code (clause known results)
+  "Return the plan text of CLAUSE, a task net. KNOWN are the Lisp variables that have values,
 RESULTS those of the results of the RAP."
-  (multiple-value-bind (steps orders) (parse-net forms)
+  (multiple-value-bind (steps orders) (parse-net (rest clause))
     (checked-steps steps)
     (let* ((given (step-results steps))
+           (all (union given known))
            (begun (tags-awaited steps)))
+      (check-queries steps all)
       `(let (,@(set-difference given (append results known))
              ,@(loop for tag in begun
-                     collect `(,(begin-variable tag) (state ',tag))))
-         (shown-as (task-net ,@forms)
+                     collect `(,(begin-variable tag) (state ',(begin-variable tag)))))
+         (shown-as ,clause
            (partial-order (,@(loop for step in steps
-                                   collect (step-code step steps (union given known) begun)))
-                          ,@(remove-duplicates (net-orders steps orders) :test #'equal)))))))
+                                   collect (step-code step steps all begun)))
+                          ,@(checked-orders clause steps orders known)))))))
