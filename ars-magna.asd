@@ -280,7 +280,7 @@
   :components
   ((:module "rpl/rap" :serial t
     :components ((:file "package") (:file "memory") (:file "queries") (:file "reading")
-                 (:file "task-nets") (:file "trying")
+                 (:file "task-nets") (:file "trying") (:file "awaiting")
                  (:file "define-rap") (:file "agenda")))))
 
 (defsystem "ars-magna/fiveam"

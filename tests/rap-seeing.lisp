@@ -174,3 +174,33 @@
     (install-goal '(see-crash cup))
     (process-goal-agenda)
     (is (> 400 (length (printed (dump-agenda)))))))
+
+;;; Waiting for the memory.
+
+(define-rap (index (see-stew ?what))
+  (attempts 1)
+  (method slowly
+    (task-net (heat (rap-hum ?what) (wait-for (hot ?what) taste))
+              (taste (rap-work taste 1))
+              (stir (rap-hum ?what) (wait-for (burnt ?what) :fail)))))
+
+(test rap-seeing.waits-for-the-memory-name-step-query-and-rap
+  (in-kitchen
+    (begin-plan 'see-stew 'soup)
+    (run-ticks 9)
+    (let ((tree (printed (print-plans))))
+      (is (has "taste (wait-for (hot ?what) taste) waits for (hot soup) since tick 1" tree)
+          "~A" tree)
+      (is (has "(wait-for (burnt ?what) :fail) waits for (burnt soup) since tick 1" tree)
+          "~A" tree))
+    (memory-add '(hot soup))
+    (run-ticks 1)
+    (let ((why (printed (why 4))))
+      (is (has "Task 4, taste, was started at tick 1 as a part of task 2, see-stew soup, try 1"
+               why) "~A" why)
+      (is (has "it went on at (wait-for (hot ?what) taste), because (hot soup) came true" why)
+          "~A" why))
+    (memory-add '(burnt soup))
+    (let ((told (printed (progn (install-goal '(see-stew soup)) (process-goal-agenda)
+                                (dump-agenda)))))
+      (is (has "(see-stew soup): (slowly): (burnt soup) has ended the step stir" told) "~A" told))))

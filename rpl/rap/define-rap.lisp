@@ -25,12 +25,6 @@ it.")
 (defun over-p (task)
   (over-word-p (fluent-value (task-status task))))
 
-(defun fail-by-event (query)
-  (fail :class :rap-event :event query))
-
-(defun check-happened (true query)
-  (unless true (fail :class :rap-condition :condition query)))
-
 (defun resource-valve (name)
   "Return the valve of the resource NAME, in the plan of the calling task."
   (let ((table (or resources*
@@ -182,9 +176,10 @@ PLAN is a RAP or another plan. Steps run at the same time unless sequences and a
 them:
   (for tag)                the step comes before the step TAG
   (fact for tag)           so it does; if the query FACT does not hold then, it is repeated
-  (wait-for query tag)     the step TAG waits for QUERY, while this step goes on
+  (wait-for query tag)     the step TAG waits until this step has begun and QUERY holds
   (wait-for query :succeed), (wait-for query :fail)   QUERY ends this step
   (until-start tag), (until-end tag)   the start or end of the step TAG ends this step
+A step that uses a result comes after the step that gives it.
 Return the name. Signals MALFORMED-DEFINITION. (From RAP, after Firby 1989 and 1995.)"
   (let* ((documentation (and (stringp (first clauses)) (first clauses)))
          (clauses (if documentation (rest clauses) clauses))

@@ -15,8 +15,10 @@ deadlines. Use this package together with ARS and NISP.")
                 #:single-value-scope #:note-expansion #:form-as-written)
   (:import-from :ars-magna.rpl.tasks #:failure-text #:write-failure #:node #:node-form #:frame
                 #:frame-data #:frame-up #:frames-around #:task-frame
-                #:failure-of #:current-form #:make-task #:spawn #:park #:+parked+
-                #:task-level #:end-with-value #:end-with-signal)
+                #:failure-of #:current-form #:make-task #:spawn #:park #:park-again #:+parked+
+                #:task-level #:end-with-value #:end-with-signal #:awaited-text #:traced-subject
+                #:timer-client #:task-timer #:task-awaiting #:task-runner #:set-timer
+                #:runner-timers #:plan-runner-tick #:make-ready #:note-event)
   (:import-from :ars-magna.nisp #:matchvar-p #:matchvar-name)
   (:export #:memory-add #:memory-delete #:memory-set #:memory-holds-p #:memory-query #:memory-tick
            #:main-memory* #:dump-memory #:reset-memory #:define-memory-rule

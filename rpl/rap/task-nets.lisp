@@ -114,35 +114,48 @@ values."
                (setf ,@(mapcan #'list (copy-list results) values))))
           call))))
 
+(defun own-event-code (annotation tag known)
+  "Return plan text that waits for the query of ANNOTATION, which ends the step TAG."
+  (destructuring-bind (query how) (rest annotation)
+    (let ((wait `(shown-as ,annotation
+                   (await-memory (holds-p ,(query-code query known))
+                                 ,(pattern-code query known)))))
+      (if (eq :fail how)
+          `(seq ,wait (fail-by-event ,(pattern-code query known) ',tag))
+          wait))))
+
+(defun end-code (annotation step known)
+  "Return a list with plan text that waits for what ends STEP by ANNOTATION; NIL if nothing does."
+  (let ((tag (first (last annotation))))
+    (ecase (annotation-kind annotation)
+      ((:for :fact) '())
+      (:wait-for (when (keywordp tag)
+                   (list (own-event-code annotation (net-step-tag step) known))))
+      (:until-start (list `(wait-for ,(begin-variable tag))))
+      (:until-end (list `(wait-for ,(over-code tag)))))))
+
 (defun watched-code (step known)
   "Return the call of STEP, which also ends when its annotations say so."
   (let ((ends (loop for annotation in (net-step-annotations step)
-                    for tag = (first (last annotation))
-                    append (ecase (annotation-kind annotation)
-                             ((:for :fact) '())
-                             (:wait-for
-                              (let ((wait `(wait-until
-                                            (holds-p ,(query-code (second annotation) known)))))
-                                (case tag
-                                  (:succeed (list wait))
-                                  (:fail (list `(seq ,wait (fail-by-event
-                                                            ',(second annotation))))))))
-                             (:until-start (list `(wait-for ,(begin-variable tag))))
-                             (:until-end (list `(wait-for ,(over-code tag))))))))
+                    append (loop for end in (end-code annotation step known)
+                                 collect `(shown-as ,annotation ,end)))))
     (if ends `(pursue ,(call-code step known) ,@ends) (call-code step known))))
 
 (defun fact-code (annotation other known)
   "Return plan text that repeats OTHER, a step, until the fact of its ANNOTATION holds."
-  (let ((query (query-code (first annotation) known)))
+  (let* ((fact (first annotation)) (query (query-code fact known)))
     `(seq (n-times *net-tries* until (holds-p ,query) ,(call-code other known))
-          (check-happened (holds-p ,query) ',(first annotation)))))
+          (check-happened (holds-p ,query) ,(pattern-code fact known)
+                          ',(first (last annotation))))))
 
 (defun event-code (annotation other known)
   "Return plan text that waits until OTHER, a step, has begun and the query of ANNOTATION holds."
-  (let ((query (query-code (second annotation) known)) (tag (net-step-tag other)))
-    `(seq (wait-for (or ,(begin-variable tag) ,(over-code tag)))
-          (wait-until (or (holds-p ,query) (over-p ,tag)))
-          (check-happened (holds-p ,query) ',(second annotation)))))
+  (destructuring-bind (event later) (rest annotation)
+    (let ((query (query-code event known)) (tag (net-step-tag other)))
+      `(seq (shown-as ,annotation (wait-for (or ,(begin-variable tag) ,(over-code tag))))
+            (shown-as ,annotation
+              (await-memory (or (holds-p ,query) (over-p ,tag)) ,(pattern-code event known)))
+            (check-happened (holds-p ,query) ,(pattern-code event known) ',later)))))
 
 (defun conditions-code (step steps known)
   "Return plan text that waits for what other STEPS make true for STEP."

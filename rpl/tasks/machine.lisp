@@ -3,7 +3,8 @@
 (in-package :ars-magna.rpl.tasks)
 
 (export '(+nothing+ +parked+ bundle-p call-leaf completion-p enter escape-p leaf-p make-bundle
-          make-completion make-escape make-leaf park reject-missing-slot single-value wake))
+          make-completion make-escape make-leaf park park-again reject-missing-slot single-value
+          wake))
 
 ;;; A signal ends or redirects a task: a PLAN-FAILURE; an ESCAPE to an enclosing node, perhaps of an
 ;;; enclosing task; the word :EVAPORATE; or a COMPLETION, by which the construct that the task
@@ -96,6 +97,12 @@ value of NODE. A leaf has no separate frame."
         (task-awaiting task) awaiting
         (task-since task) (runner-tick (the plan-runner (%task-runner task))))
   (note-event task :wait (traced-subject awaiting)))
+
+(defun park-again (task awaiting)
+  "Let TASK, which was made ready to look whether AWAITING has come, go on to wait for it, since the
+same tick. The trace does not show that. The current step of TASK must then return +PARKED+."
+  (setf (task-state task) :waiting
+        (task-awaiting task) awaiting))
 
 (defun wake (task value &optional (reason (task-awaiting task)))
   "Wake TASK, which waits, with VALUE. REASON is the event that TASK waited for."

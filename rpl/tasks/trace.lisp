@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(awaited-text asker-text answer-p trace-so-far))
+(export '(awaited-text traced-subject asker-text answer-p trace-so-far))
 
 (defgeneric awaited-text (awaited)
   (:documentation "Return a text of AWAITED, an object that a task waits for.")
