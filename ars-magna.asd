@@ -279,8 +279,8 @@
   :serial t
   :components
   ((:module "rpl/rap" :serial t
-    :components ((:file "package") (:file "memory") (:file "queries") (:file "reading")
-                 (:file "task-nets") (:file "trying") (:file "awaiting")
+    :components ((:file "package") (:file "memory") (:file "queries") (:file "rules")
+                 (:file "reading") (:file "task-nets") (:file "trying") (:file "awaiting")
                  (:file "define-rap") (:file "agenda")))))
 
 (defsystem "ars-magna/fiveam"
@@ -448,7 +448,7 @@
                  (:file "pursuit-bare") (:file "testbeds-pursuit")
                  (:file "testbeds-tiles") (:file "testbeds-agents") (:file "testbeds-shell")
                  (:file "testbeds-trucks") (:file "rap") (:file "rap-random") (:file "rap-seeing")
-                 (:file "rap-definitions")
+                 (:file "rap-definitions") (:file "rap-rules") (:file "rap-agenda")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

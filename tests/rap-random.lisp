@@ -2,6 +2,8 @@
 
 (in-package :ars-magna.tests.rap)
 
+(in-suite ars-magna.tests::rap)
+
 ;;; A program is a list of RAPs, each a list (name success attempts method...), where SUCCESS is a
 ;;; pattern or NIL. A method is a list (context deed...). CONTEXT is a list of patterns, or lists
 ;;; (not pattern). A deed is (wait n), (add pattern), (delete pattern), (quit), which fails, or

@@ -2,8 +2,8 @@
 
 (in-package :ars-rap)
 
-;;; The answer to a query is a list of bindings, in the order of the memory, the newest fact first.
-;;; The rules of a memory work backwards: a fact that follows from others is in no memory.
+;;; The answers to a query are bindings, in the order of the memory, the newest fact first. Rules
+;;; work backwards: a fact that follows from others is in no memory.
 
 (define-record (memory-rule (:constructor make-memory-rule (name head query documentation)))
   "A rule by which facts follow from others, defined by DEFINE-MEMORY-RULE."
@@ -16,26 +16,59 @@
 
 (defparameter *rule-depth-limit* 1000 "How deeply rules may use each other.")
 
-(defvar *rules-in-use* '()
-  "What this thread is finding out by rules, innermost first: lists (rule pattern).")
+(defparameter *rule-data-limits* '(50 1000)
+  "How deep the lists in the data of rules may be nested, and how many conses they may have.")
+
+(defvar *tables* nil
+  "The tables of the query in progress: a hash table from lists (rule pattern), as by DATA-KEY; or
+NIL, without tables.")
+
+(defvar *rounds* 0 "How many rounds the query in progress has begun.")
+(defvar *round* nil "The number of the round in progress, or NIL.")
+(defvar *rule-depth* 0 "How deep in each other rules are being applied.")
+(defvar *incomplete-p* nil "True if facts were taken from a table that may lack some.")
+(defvar *grown-p* nil "True if the round in progress has found a new fact.")
 
 (defun solve (query bindings)
   "Return a list of the extensions of BINDINGS for which QUERY holds."
+  (let ((*tables* nil) (*rounds* 0) (*round* nil) (*rule-depth* 0) (solutions '()))
+    (map-solutions (lambda (solution) (push solution solutions)) query bindings)
+    (nreverse solutions)))
+
+(defun map-solutions (function query bindings)
+  "Call FUNCTION with each extension of BINDINGS for which QUERY holds."
+  (declare (type function function))
   (case (query-operator query)
-    ((nil) (solve-pattern query bindings (lambda (tick) (declare (ignore tick)) t)))
-    (and (let ((all (list bindings)))
-           (dolist (part (rest query) all)
-             (setf all (loop for each in all append (solve part each))))))
-    (or (loop for part in (rest query) append (solve part bindings)))
-    (not (if (solve (second query) bindings) '() (list bindings)))
+    ((nil) (map-matches function query bindings nil))
+    (and (map-joint-solutions function (rest query) bindings))
+    (or (dolist (part (rest query)) (map-solutions function part bindings)))
+    (not (unless (solvable-p (second query) bindings) (funcall function bindings)))
     (within (destructuring-bind (span pattern) (rest query)
-              (let ((since (- (now) (instance span bindings))))
-                (solve-pattern pattern bindings (lambda (tick) (<= since tick))))))
-    (test (destructuring-bind (function . variables) (rest query)
-            (and (apply function (loop for variable in variables
-                                       collect (value-of-variable variable bindings query)))
-                 (list bindings))))
-    (t (solve-comparison query bindings))))
+              (map-matches function pattern bindings (- (now) (instance span bindings)))))
+    (test (when (call-form (rest query) bindings query) (funcall function bindings)))
+    (t (map-comparison function query bindings))))
+
+(defun map-joint-solutions (function queries bindings)
+  "Call FUNCTION with each extension of BINDINGS for which all QUERIES hold."
+  (declare (type function function))
+  (if queries
+      (map-solutions (lambda (solution) (map-joint-solutions function (rest queries) solution))
+                     (first queries) bindings)
+      (funcall function bindings)))
+
+(defun solvable-p (query bindings)
+  "True if QUERY holds for an extension of BINDINGS. Rules that are being applied must not matter."
+  (let ((*round* nil))
+    (map-solutions (lambda (solution)
+                     (declare (ignore solution))
+                     (return-from solvable-p t))
+                   query bindings)
+    nil))
+
+(defun call-form (form bindings query)
+  "Return the value of FORM, a list (function variable...), a part of QUERY."
+  (apply (first form) (loop for variable in (rest form)
+                            collect (value-of-variable variable bindings query))))
 
 (defun value-of-variable (variable bindings query)
   (cdr (or (assoc variable bindings :test #'eq)
@@ -43,16 +76,52 @@
                         it one before."
                        (data-text query) (data-text variable)))))
 
-(defun solve-pattern (pattern bindings tick-test)
-  "Return the extensions of BINDINGS by which PATTERN matches facts whose ticks pass TICK-TEST, or
-facts that follow by rules."
-  (append (loop for (fact tick) in main-memory*
-                for extended = (if (funcall tick-test tick) (match pattern fact bindings) :fail)
-                unless (eq :fail extended) collect extended)
-          (loop for rule in (all-memory-rules)
-                append (loop for fact in (facts-by-rule rule (instance pattern bindings))
-                             for extended = (match pattern fact bindings)
-                             unless (eq :fail extended) collect extended))))
+(defun map-matches (function pattern bindings since)
+  "Call FUNCTION with the extensions of BINDINGS by which PATTERN matches facts, and then those by
+which it matches what follows by rules. If SINCE is a tick, leave out older facts."
+  (declare (type function function))
+  (flet ((try (fact)
+           (let ((extended (match pattern fact bindings)))
+             (unless (eq :fail extended) (funcall function extended)))))
+    (loop for (fact tick) in main-memory*
+          do (when (or (null since) (<= since tick)) (try fact)))
+    (dolist (rule (all-memory-rules))
+      (let ((call (instance pattern bindings)))
+        (unless (eq :fail (bind-head (memory-rule-head rule) call '()))
+          ;; More may be found meanwhile.
+          (loop with facts = (facts-by-rule rule call)
+                for i from 0
+                while (< i (length facts)) do (try (aref facts i))))))))
+
+;;; Applying rules. A table has the facts that follow by a rule and may match a pattern. Rules may
+;;; use each other in circles. So the first table that a query needs is worked out in rounds, with
+;;; the tables that it needs itself. In a round, each of them is worked out once; where one needs a
+;;; table that this round has begun already, it takes the facts found so far. The rounds end when
+;;; one has found nothing new, or when no table has had to do with fewer facts than there may be.
+
+(defstruct (rule-table (:constructor make-rule-table (rule pattern)) (:copier nil))
+  "The FACTS that follow by RULE and may match PATTERN, and their keys. ROUND is the last round that
+has worked them out."
+  (rule nil :type memory-rule :read-only t)
+  (pattern nil :type list :read-only t)
+  (facts (make-array 8 :adjustable t :fill-pointer 0) :type vector :read-only t)
+  (keys (make-hash-table :test 'equal) :type hash-table :read-only t)
+  (round 0 :type fixnum)
+  (complete-p nil :type boolean))
+
+(defun data-key (data)
+  "Return an object for DATA. Those of two data are EQUAL if the data are VALUE-EQUAL."
+  (cond ((consp data) (cons (data-key (car data)) (data-key (cdr data))))
+        ((null data) nil)
+        ((symbolp data) (cons :symbol (string-upcase data)))
+        ((realp data) (rational data))
+        (t data)))
+
+(defun generalized (pattern)
+  "Return PATTERN with ? in place of its variables."
+  (cond ((variable-p pattern) '?)
+        ((consp pattern) (cons (generalized (car pattern)) (generalized (cdr pattern))))
+        (t pattern)))
 
 (defun bind-head (head pattern bindings)
   "Match HEAD, of a rule, with PATTERN, which may have variables: they match anything."
@@ -63,25 +132,66 @@ facts that follow by rules."
         ((and (variable-p head) (not (ground-p pattern))) bindings)
         (t (match head pattern bindings))))
 
-(defun generalized (pattern)
-  "Return PATTERN with ? in place of its variables."
-  (cond ((variable-p pattern) '?)
-        ((consp pattern) (cons (generalized (car pattern)) (generalized (cdr pattern))))
-        (t pattern)))
-
-;;; While the facts of a pattern are found out by a rule, the rule gives no facts for the same
-;;; pattern again. So rules about circular relations come to an end.
-
 (defun facts-by-rule (rule pattern)
-  "Return the facts that follow by RULE and may match PATTERN."
-  (let ((bindings (bind-head (memory-rule-head rule) pattern '()))
-        (use (list rule (generalized pattern))))
-    (unless (or (eq :fail bindings) (member use *rules-in-use* :test #'value-equal))
-      (when (< *rule-depth-limit* (length *rules-in-use*))
-        (reject-use "The memory rule ~(~A~) uses itself without end." (memory-rule-name rule)))
-      (let ((*rules-in-use* (cons use *rules-in-use*)))
-        (loop for solution in (solve (memory-rule-query rule) bindings)
-              collect (fact-of-rule rule solution))))))
+  "Return a vector of the facts that follow by RULE and may match PATTERN. Facts that are found
+later may be added to it."
+  (let ((table (rule-table rule (generalized pattern))))
+    (cond ((rule-table-complete-p table))
+          ((null *round*) (complete-table table))
+          ((= *round* (rule-table-round table)) (setf *incomplete-p* t))
+          (t (extend-table table)))
+    (rule-table-facts table)))
+
+(defun rule-table (rule pattern)
+  (unless *tables* (setf *tables* (make-hash-table :test 'equal)))
+  (let ((key (cons (memory-rule-name rule) (data-key pattern))))
+    (or (gethash key *tables*)
+        (setf (gethash key *tables*) (make-rule-table rule pattern)))))
+
+(defun complete-table (table)
+  "Find out all facts of TABLE, and of the tables that it needs."
+  (let ((first (1+ *rounds*)))
+    (loop
+      (let ((*round* (incf *rounds*)) (*incomplete-p* nil) (*grown-p* nil))
+        (extend-table table)
+        (unless (and *incomplete-p* *grown-p*) (return))))
+    (loop for each being the hash-values of *tables*
+          do (when (<= first (rule-table-round each)) (setf (rule-table-complete-p each) t)))))
+
+(defun extend-table (table)
+  "Apply the rule of TABLE once, and add the facts to TABLE."
+  (let* ((rule (rule-table-rule table))
+         (bindings (bind-head (memory-rule-head rule) (rule-table-pattern table) '()))
+         (*rule-depth* (1+ *rule-depth*))
+         (around-p (shiftf *incomplete-p* nil)))
+    (when (< *rule-depth-limit* *rule-depth*) (reject-endless-rule rule))
+    (check-size (rule-table-pattern table) rule)
+    (setf (rule-table-round table) *round*)
+    (map-solutions (lambda (solution) (add-to-table (fact-of-rule rule solution) table))
+                   (memory-rule-query rule) bindings)
+    (unless *incomplete-p* (setf (rule-table-complete-p table) t))
+    (setf *incomplete-p* (or around-p *incomplete-p*))))
+
+(defun add-to-table (fact table)
+  (let ((key (data-key fact)) (keys (rule-table-keys table)))
+    (unless (gethash key keys)
+      (check-size fact (rule-table-rule table))
+      (setf (gethash key keys) t *grown-p* t)
+      (vector-push-extend fact (rule-table-facts table)))))
+
+(defun check-size (data rule)
+  "Signal MISUSE if DATA, a fact or pattern of RULE, is too large. Then there is no end of them."
+  (let ((count 0))
+    (destructuring-bind (deepest most) *rule-data-limits*
+      (labels ((walk (data depth)
+                 (loop while (consp data)
+                       do (when (or (< deepest depth) (< most (incf count)))
+                            (reject-endless-rule rule))
+                          (walk (pop data) (1+ depth)))))
+        (walk data 0)))))
+
+(defun reject-endless-rule (rule)
+  (reject-use "The memory rule ~(~A~) uses itself without end." (memory-rule-name rule)))
 
 (defun fact-of-rule (rule bindings)
   (let ((fact (instance (memory-rule-head rule) bindings)))
@@ -90,13 +200,15 @@ facts that follow by rules."
                   (memory-rule-name rule) (data-text fact)))
     fact))
 
-(defun solve-comparison (query bindings)
+(defun map-comparison (function query bindings)
+  "Call FUNCTION with BINDINGS, extended if a variable gets a value, if the comparison QUERY holds."
+  (declare (type function function))
   (destructuring-bind (operator a b) (instance query bindings)
-    (cond ((and (string= '= operator) (variable-p a)) (list (acons a b bindings)))
-          ((and (string= '= operator) (variable-p b)) (list (acons b a bindings)))
+    (cond ((and (string= '= operator) (variable-p a)) (funcall function (acons a b bindings)))
+          ((and (string= '= operator) (variable-p b)) (funcall function (acons b a bindings)))
           (t (dolist (side (list a b))
                (when (variable-p side) (value-of-variable side '() query)))
-             (if (compare (query-operator query) a b) (list bindings) '())))))
+             (when (compare (query-operator query) a b) (funcall function bindings))))))
 
 (defun compare (operator a b)
   (case operator
@@ -137,8 +249,11 @@ facts that follow by rules."
 
 (defun memory-instances (template query)
   "Return a list of instances of TEMPLATE, one for each different way in which QUERY holds."
-  (remove-duplicates (mapcar (lambda (bindings) (instance template bindings)) (solve query '()))
-                     :test #'value-equal :from-end t))
+  (let ((keys (make-hash-table :test 'equal)))
+    (loop for bindings in (solve query '())
+          for instance = (instance template bindings)
+          for key = (data-key instance)
+          unless (shiftf (gethash key keys) t) collect instance)))
 
 (defun memory-query (template query)
   "Return a list of instances of TEMPLATE, one for each way in which QUERY holds in the memory of
@@ -156,19 +271,3 @@ Signals WRONG-ARGUMENT, and MISUSE if a variable is compared that has no value."
   "True if QUERY holds in the memory of the current run; see MEMORY-QUERY."
   (check-query 'memory-holds-p query)
   (and (solve query '()) t))
-
-(defmacro define-memory-rule (name head query &optional documentation)
-  "Define the rule NAME: facts that match HEAD, a pattern, follow whenever QUERY holds; see
-MEMORY-QUERY. Rules may use each other. Return NAME. Signals MALFORMED-DEFINITION."
-  (let ((definition (definition-title "define-memory-rule" name)))
-    (unless (and name (symbolp name) (not (keywordp name)))
-      (reject-clause definition name "a symbol as the name"))
-    (unless (pattern-valid-p head)
-      (reject-clause definition head "a pattern of facts, such as (near ?a ?b)"))
-    (unless (query-valid-p query)
-      (reject-clause definition query *query-syntax*))
-    (unless (typep documentation '(or null string))
-      (reject-clause definition documentation "a string"))
-    `(progn (register *memory-rules* ',name
-                      (make-memory-rule ',name ',head ',query ,documentation))
-            ',name)))

@@ -1,0 +1,138 @@
+;;;; rap-rules.lisp -- rules of the memory give what a model of them gives.
+
+(in-package :ars-magna.tests.rap)
+
+(in-suite ars-magna.tests::rap)
+
+;;; The model works forwards: it adds what follows to a list of facts until nothing new follows.
+;;; Queries of its rules are lists of patterns, comparisons and (not pattern). Rules of the relation
+;;; s may use NOT with r, which has no rules, and with p and q, whose rules do not use s.
+
+(defun model-bindings (pattern fact bindings)
+  "Return the extension of BINDINGS by which PATTERN matches FACT, or :FAIL."
+  (loop for part in pattern
+        for value in fact
+        for binding = (assoc part bindings)
+        do (cond ((not (member part '(?x ?y ?z))) (unless (eql part value) (return :fail)))
+                 ((null binding) (push (cons part value) bindings))
+                 ((not (eql value (cdr binding))) (return :fail)))
+        finally (return bindings)))
+
+(defun model-solutions (queries facts bindings)
+  (if (null queries)
+      (list bindings)
+      (destructuring-bind (query . more) queries
+        (flet ((go-on (bindings) (model-solutions more facts bindings)))
+          (case (first query)
+            (not (if (model-solutions (rest query) facts bindings) '() (go-on bindings)))
+            ((< /=) (if (apply (first query) (model-instance (rest query) bindings))
+                        (go-on bindings)
+                        '()))
+            (t (loop for fact in facts
+                     for extended = (model-bindings query fact bindings)
+                     unless (eq :fail extended) append (go-on extended))))))))
+
+(defun model-closure (rules facts)
+  "Return FACTS with all that follows by RULES, lists (head query...)."
+  (loop
+    (let ((new (set-difference
+                (remove-duplicates
+                 (loop for (head . queries) in rules
+                       append (loop for bindings in (model-solutions queries facts '())
+                                    collect (model-instance head bindings)))
+                 :test #'equal)
+                facts :test #'equal)))
+      (unless new (return facts))
+      (setf facts (append new facts)))))
+
+(defun random-rule (relations used)
+  "Return a rule (head query...) for one of RELATIONS, by patterns of the relations USED."
+  (let* ((patterns (loop repeat (1+ (random 3))
+                         collect (list (pick used) (pick '(?x ?y ?z 1)) (pick '(?x ?y ?z 2)))))
+         (bound (intersection '(?x ?y ?z) (apply #'append patterns)))
+         (known (append bound '(1 3))))
+    (append (list (list (pick relations) (pick known) (pick known)))
+            patterns
+            (when (and (member 's relations) (zerop (random 2)))
+              `((not (,(pick '(p q r)) ,(pick known) ,(pick known)))))
+            (when (zerop (random 4)) `((,(pick '(< /=)) ,(pick known) ,(pick known)))))))
+
+(defun random-rules ()
+  "Return a list of rules for p and q, and a list of rules for s."
+  (list (loop repeat (1+ (random 5)) collect (random-rule '(p q) '(p q r)))
+        (loop repeat (random 3) collect (random-rule '(s) '(p q r s)))))
+
+(defun call-with-rules (function rules)
+  "Define RULES, lists (head query...), call FUNCTION, and remove them."
+  (let ((names (loop for nil in rules
+                     for number from 1
+                     collect (intern (format nil "RANDOM-RULE-~D" number)
+                                     :ars-magna.tests.rap))))
+    (unwind-protect
+         (progn (loop for (head . queries) in rules
+                      for name in names
+                      do (eval `(define-memory-rule ,name ,head (and ,@queries))))
+                (funcall function))
+      (dolist (name names)
+        (handler-case (undefine 'memory-rule name) (unknown-name () nil))))))
+
+(defun wrong-answers (rules)
+  "Return a list (pattern answers expected) for random facts under RULES, or NIL."
+  (let* ((facts (remove-duplicates
+                 (loop repeat (random 8)
+                       collect (list (pick '(p q r r)) (1+ (random 4)) (1+ (random 4))))
+                 :test #'equal))
+         (all (model-closure (second rules) (model-closure (first rules) facts))))
+    (in-rap-run
+      (mapc #'memory-add facts)
+      (loop for relation in '(p q r s)
+            append (loop for (a b) in '((?x ?y) (1 ?y) (?x 2) (3 3) (?x ?x))
+                         for pattern = (list relation a b)
+                         for right = (remove-if (lambda (fact)
+                                                  (eq :fail (model-bindings pattern fact '())))
+                                                all)
+                         for answers = (memory-query pattern pattern)
+                         when (set-exclusive-or right answers :test #'equal)
+                           collect (list pattern answers right))))))
+
+(test rap-rules.random-rules-give-what-their-model-gives
+  (let ((*random-state* (sb-ext:seed-random-state 11)) (wrong '()) (more 0))
+    (dotimes (i 150)
+      (let ((rules (random-rules)))
+        (call-with-rules (lambda ()
+                           (dotimes (j 2)
+                             (let ((found (wrong-answers rules)))
+                               (when found (push (list rules found) wrong)))))
+                         (apply #'append rules))
+        (when (rest (first rules)) (incf more))))
+    (is (null wrong) "~S" (first wrong))
+    (is (< 50 more))))
+
+(define-memory-rule rap-left (left ?a ?b) (or (road ?a ?b) (and (left ?a ?c) (road ?c ?b))))
+(define-memory-rule rap-both (both ?a ?b) (or (road ?a ?b) (and (both ?a ?c) (both ?c ?b))))
+(define-memory-rule rap-longer (longer (box ?a)) (longer ?a))
+
+(test rap-rules.rules-may-begin-with-themselves-and-use-themselves-twice
+  (in-rap-run
+    (loop for i from 9 downto 0 do (memory-add (list 'road i (1+ i))))
+    (is (equal '(1 2 3 4 5 6 7 8 9 10) (memory-query '?x '(left 0 ?x))))
+    (is (equal '(0 1 2 3 4 5 6 7 8 9) (sort (memory-query '?x '(both ?x 10)) #'<)))
+    (memory-add '(road 10 0))
+    (is (= 121 (length (memory-query '(?x ?y) '(both ?x ?y)))))
+    (is (equal '(10) (memory-query '?x '(and (left 3 ?x) (road ?x 0)))))))
+
+(test rap-rules.rules-without-end-are-refused
+  (in-rap-run
+    (is (null (memory-query '?x '(longer ?x))))
+    (memory-add '(longer cup))
+    (signals misuse (memory-query '?x '(longer ?x)))))
+
+(test rap-rules.circles-through-not-are-refused
+  (flet ((refusal (rules)
+           (handler-case (call-with-rules (lambda () nil) rules)
+             (misuse (condition) (princ-to-string condition)))))
+    (is (search "random-rule-1 uses itself through NOT"
+                (refusal '(((p ?x) (q ?x) (not (p ?x)))))))
+    (is (search "by way of random-rule-2"
+                (refusal '(((p ?x) (q ?x) (not (s ?x))) ((s ?x) (q ?x) (p ?x))))))
+    (is (null (refusal '(((state ?x on) (lamp ?x) (not (state ?x off))) ((p ?x) (p ?x))))))))
