@@ -136,3 +136,19 @@
     (is (search "by way of random-rule-2"
                 (refusal '(((p ?x) (q ?x) (not (s ?x))) ((s ?x) (q ?x) (p ?x))))))
     (is (null (refusal '(((state ?x on) (lamp ?x) (not (state ?x off))) ((p ?x) (p ?x))))))))
+
+(define-rap (index (rap-weigh ?limit))
+  (method (context (and (weight ?thing ?w) (value ?twice (* 2 ?w)) (< ?twice ?limit)
+                        (value ?twice (+ ?w ?w))))
+          (primitive (note-rap (list thing twice)))))
+
+(test rap-rules.values-of-forms-are-given-to-variables
+  (is (equal '((0 (cup 6)))
+             (rap-notes (memory-add '(weight pan 9))
+                        (memory-add '(weight cup 3))
+                        (memory-add '(weight pot 7))
+                        (run-plan 'rap-weigh 10))))
+  (in-rap-run (signals wrong-argument (memory-query '?x '(value ?x (+ 1 2)))))
+  (is (search "(value ?x form)"
+              (rap-mistake '(define-rap (index (foo)) (succeed (value 3 (+ 1 2)))
+                             (method (primitive 1)))))))

@@ -168,8 +168,9 @@ If the success test holds, the RAP succeeds. Otherwise it runs one method and te
 chooses among the methods whose context holds, with each way of giving values to its variables, one
 that it has tried least, and among equals the first. It fails with RAP-FAILED when there is none
 that it has tried fewer than N times. An error of Lisp ends the RAP.
-A query may also contain (test form). FORM is Lisp, and the forms of a primitive are plan text. In
-both, ?x means the variable x, except in quoted data: there, it stays a variable of a pattern.
+A query may also contain (test form), and (value ?x form), which gives ?x the value of FORM. FORM is
+Lisp, and the forms of a primitive are plan text. In both, ?x means the variable x, except in quoted
+data: there, it stays a variable of a pattern.
 A step of a task net is
   (tag (plan argument... [=> ?result...]) annotation...), (sequence step...) or (parallel step...)
 PLAN is a RAP or another plan. Steps run at the same time unless sequences and annotations order

@@ -57,7 +57,7 @@ extended bindings, or :FAIL."
 
 ;;; Facts.
 
-(defparameter *query-operators* '(and or not = /= < > <= >= within test)
+(defparameter *query-operators* '(and or not = /= < > <= >= within test value)
   "The symbols that begin a query which is no pattern of facts.")
 
 (defun query-operator (query)

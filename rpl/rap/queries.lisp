@@ -46,6 +46,9 @@ NIL, without tables.")
     (within (destructuring-bind (span pattern) (rest query)
               (map-matches function pattern bindings (- (now) (instance span bindings)))))
     (test (when (call-form (rest query) bindings query) (funcall function bindings)))
+    (value (let ((extended (match (second query) (call-form (cddr query) bindings query)
+                             bindings)))
+             (unless (eq :fail extended) (funcall function extended))))
     (t (map-comparison function query bindings))))
 
 (defun map-joint-solutions (function queries bindings)
@@ -222,7 +225,7 @@ later may be added to it."
 ;;; Checking.
 
 (defun query-valid-p (query &key tests-too)
-  "True if QUERY is a query. With TESTS-TOO, (test form) is one."
+  "True if QUERY is a query. With TESTS-TOO, (test form) and (value ?x form) are queries."
   (flet ((all (queries) (and (proper-list-p queries)
                              (every (lambda (each) (query-valid-p each :tests-too tests-too))
                                     queries))))
@@ -234,6 +237,7 @@ later may be added to it."
                    (or (realp (second query)) (variable-p (second query)))
                    (pattern-valid-p (third query))))
       (test (and tests-too (typep query '(cons t (cons t null)))))
+      (value (and tests-too (typep query '(cons t (cons (satisfies variable-p) (cons t null))))))
       (t (typep query '(cons t (cons t (cons t null))))))))
 
 (defparameter *query-syntax*

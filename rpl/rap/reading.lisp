@@ -44,7 +44,7 @@
 
 (defun query-code (query known &optional (bound known) (whole query))
   "Return a form whose value is QUERY with the values of the Lisp variables KNOWN, and with
-functions in place of the forms of its tests. BOUND are the variables that have values before QUERY,
+functions in place of the forms of its tests and values. BOUND are the variables that have values before QUERY,
 which is a part of the query WHOLE."
   (flet ((part-code (part) (query-code part known bound whole)))
     (case (query-operator query)
@@ -52,20 +52,23 @@ which is a part of the query WHOLE."
                                collect (part-code part)
                                do (setf bound (variables-after part bound)))))
       ((or not) `(list ',(query-operator query) ,@(mapcar #'part-code (rest query))))
-      (test (test-code (second query) known bound whole))
+      (test `(list* 'test ,(form-code (second query) known bound whole)))
+      (value `(list* 'value ,(pattern-code (second query) known)
+                     ,(form-code (third query) known bound whole)))
       (t (pattern-code query known)))))
 
-(defun test-code (form known bound whole)
-  "Return a form for (test FORM) in the query WHOLE: see QUERY-CODE."
+(defun form-code (form known bound whole)
+  "Return code for a list of a function that does FORM, which is Lisp in the query WHOLE, and the
+variables that are its arguments: see QUERY-CODE."
   (let ((arguments (loop for marked in (marked-variables whole)
                          for variable = (code-variable marked)
                          when (and (member variable bound)
                                    (not (member variable known))
                                    (mentions-variable-p form variable))
                            collect marked)))
-    `(list* 'test (lambda ,(mapcar #'code-variable arguments)
-                    ,@(rejecting-code (set-difference (code-variables whole) bound) whole
-                                      (list (code-with-variables form))))
+    `(list* (lambda ,(mapcar #'code-variable arguments)
+              ,@(rejecting-code (set-difference (code-variables whole) bound) whole
+                                (list (code-with-variables form))))
             ',arguments)))
 
 (defun mentions-variable-p (form variable)
@@ -95,7 +98,7 @@ which is a part of the query WHOLE."
 
 (defun check-rap-query (query)
   (unless (query-valid-p query :tests-too t)
-    (reject-part query (format nil "~A, or (test form)" *query-syntax*))))
+    (reject-part query (format nil "~A, (test form) or (value ?x form)" *query-syntax*))))
 
 ;;; Which variables have values. A query that holds gives values to those of its patterns; but one
 ;;; inside (not ...) gives none, and (or ...) only to those that are in all its branches.
@@ -124,6 +127,8 @@ Signal an error if a comparison or test in QUERY uses a variable before it has a
      (union bound (code-variables (third query))))
     (test (check-values query (unquoted (rest query)) bound)
      bound)
+    (value (check-values query (unquoted (cddr query)) bound)
+     (union bound (code-variables (second query))))
     (= (equal-variables-after query bound))
     (t (check-values query (rest query) bound)
      bound)))
