@@ -281,7 +281,7 @@
   ((:module "rpl/rap" :serial t
     :components ((:file "package") (:file "memory") (:file "queries") (:file "rules")
                  (:file "reading") (:file "task-nets") (:file "trying") (:file "awaiting")
-                 (:file "define-rap") (:file "agenda")))))
+                 (:file "define-rap") (:file "agenda") (:file "working")))))
 
 (defsystem "ars-magna/fiveam"
   :description "Checks for regression suites: plans that are held to their rates of success."

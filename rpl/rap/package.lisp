@@ -18,11 +18,18 @@ deadlines. Use this package together with ARS and NISP.")
                 #:failure-of #:current-form #:make-task #:spawn #:park #:park-again #:+parked+
                 #:task-level #:end-with-value #:end-with-signal #:awaited-text #:traced-subject
                 #:timer-client #:task-timer #:task-awaiting #:task-runner #:set-timer
-                #:runner-timers #:plan-runner-tick #:make-ready #:note-event)
+                #:runner-timers #:plan-runner-tick #:make-ready #:note-event
+                #:agent-note #:runner-agents #:task-agent #:task-index #:status-word #:all-tasks
+                #:enter-plan #:*calling-task* #:agent-runner #:inside-plans-p
+                #:note-from-outside)
+  (:import-from :ars-magna.rpl.fluents #:post-entry)
+  (:import-from :ars-magna.rpl-robot #:usable-interface #:interface-runner
+                #:call-with-plans-in-use)
   (:import-from :ars-magna.nisp #:matchvar-p #:matchvar-name)
   (:export #:memory-add #:memory-delete #:memory-set #:memory-holds-p #:memory-query #:memory-tick
            #:main-memory* #:dump-memory #:reset-memory #:define-memory-rule
            #:define-rap #:rap-failed #:rap-failed-name #:rap-failed-tries #:goal-priority*
            #:with-resources
-           #:install-goal #:remove-goal #:execute-goal #:process-goal-agenda #:work-on-agenda
+           #:install-goal #:remove-goal #:set-goal-priority
+           #:execute-goal #:process-goal-agenda #:work-on-agenda
            #:main-agenda* #:agenda-goals #:dump-agenda #:reset-agenda))

@@ -44,8 +44,8 @@
 
 (defun query-code (query known &optional (bound known) (whole query))
   "Return a form whose value is QUERY with the values of the Lisp variables KNOWN, and with
-functions in place of the forms of its tests and values. BOUND are the variables that have values before QUERY,
-which is a part of the query WHOLE."
+functions in place of the forms of its tests and values. BOUND are the variables that have values
+before QUERY, which is a part of the query WHOLE."
   (flet ((part-code (part) (query-code part known bound whole)))
     (case (query-operator query)
       (and `(list 'and ,@(loop for part in (rest query)

@@ -1,0 +1,175 @@
+;;;; working.lisp -- plans that work on the agenda.
+
+(in-package :ars-rap)
+
+;;; The task of a goal.
+
+(defun note-failure (number goal deadline failure)
+  "Mark GOAL, the goal NUMBER, as failed by FAILURE. Warn of an error of Lisp, with its place in the
+plan."
+  (set-goal-state number :failed (if (overdue-p deadline)
+                                     (late-text deadline)
+                                     (failure-text failure)))
+  (when (typep failure 'lisp-failure)
+    (warn "The goal ~A failed: ~S" (data-text goal) failure)))
+
+(defun overdue-p (deadline) (and deadline (< deadline (now))))
+
+(defun late-text (deadline) (format nil "Not achieved by tick ~A." deadline))
+
+(defun ticks-left (deadline)
+  "Return in how many ticks the first tick after DEADLINE comes."
+  (- (1+ (floor deadline)) (now)))
+
+(defun note-interruption (number)
+  "Mark the goal NUMBER as failed if it is still active: its work was ended from outside."
+  (when (eq :active (goal-state number))
+    (set-goal-state number :failed "Its plan was ended.")))
+
+(def-interp-proc pursue-goal (number goal deadline)
+  "Work for GOAL, the active goal NUMBER. If the work is ended from outside, it has failed."
+  (evap-protect
+      (handle-failure ((t (failure) (note-failure number goal deadline failure) (return nil)))
+        (if deadline
+            (with-deadline ((ticks-left deadline)) (apply-plan (first goal) (rest goal)))
+            (apply-plan (first goal) (rest goal)))
+        (set-goal-state number :achieved))
+    (note-interruption number)))
+
+(defun goal-label (number goal) (format nil "goal ~D ~A" number (data-text goal)))
+
+(defun goal-task-p (task)
+  (let ((row (agenda-row (task-index task))))
+    (and row (equal (task-name task) (goal-label (first row) (second row))))))
+
+(defun suspended-p (task) (eq :suspended (status-word task (task-state task))))
+
+(defun start-goal (row)
+  "Start a task for the goal of ROW, as a part of the task around the calling task."
+  (destructuring-bind (number goal priority deadline &rest others) row
+    (declare (ignore others))
+    (multiple-value-bind (body environment) (enter-plan 'pursue-goal number goal deadline)
+      (let ((whole (task-parent (current-task))) (task (make-task (goal-label number goal) body)))
+        (set-goal-state number :active)
+        (spawn whole body environment number (task-level whole) task)
+        (give-priority task priority)))))
+
+(defun give-priority (task priority)
+  (let ((*calling-task* task)) (setf goal-priority* priority)))
+
+;;; The task that looks after the others.
+
+(defun goals-for (robot only state)
+  "Return the rows in STATE of the goals for ROBOT; or, if ONLY is a number, of that goal."
+  (remove-if-not (lambda (row)
+                   (and (eq state (fifth row))
+                        (if only (= only (first row)) (member (seventh row) (list nil robot)))))
+                 main-agenda*))
+
+(defun before-p (row other)
+  "True if the goal of ROW comes before that of OTHER, an older one."
+  (destructuring-bind (priority deadline) (subseq row 2 4)
+    (destructuring-bind (other-priority other-deadline) (subseq other 2 4)
+      (cond ((/= priority other-priority) (> priority other-priority))
+            ((and deadline other-deadline) (< deadline other-deadline))
+            (t (and deadline (not other-deadline)))))))
+
+(defun fail-overdue-goals (rows)
+  (loop for (number nil nil deadline) in rows
+        when (overdue-p deadline) do (set-goal-state number :failed (late-text deadline))))
+
+(defun tend-goals (taken)
+  "Evaporate the tasks of goals among TAKEN that are no longer on the agenda, and give the others
+their priorities. TAKEN is a list of conses (number . priority)."
+  (dolist (task (task-children (task-parent (current-task))))
+    (let* ((goal (assoc (task-index task) taken)) (row (and goal (agenda-row (first goal)))))
+      (cond ((null goal))
+            ((null row) (evaporate task))
+            ((/= (cdr goal) (third row))
+             (setf (cdr goal) (third row))
+             (give-priority task (third row)))))))
+
+(defun start-goals (robot only taken at-once)
+  "Start tasks for waiting goals, at most AT-ONCE at the same time. Return TAKEN with those goals."
+  (loop for rows = (stable-sort (goals-for robot only :waiting) #'before-p)
+        while (and rows (< (count :active taken :key (lambda (goal) (goal-state (first goal))))
+                           at-once))
+        do (start-goal (first rows))
+           (push (cons (first (first rows)) (third (first rows))) taken))
+  taken)
+
+(defun next-deadline (rows)
+  "Return in how many ticks the first deadline of the goals of ROWS is over, or NIL."
+  (let ((deadlines (remove nil (mapcar #'fourth rows))))
+    (and deadlines (ticks-left (reduce #'min deadlines)))))
+
+(def-interp-proc look-after-goals (robot only at-once changed)
+  "Work on goals until none is left. Return a list of conses (number . priority) of the goals."
+  (let ((taken '()))
+    (loop
+      (set-value changed nil)
+      (fail-overdue-goals (goals-for robot only :waiting))
+      (tend-goals taken)
+      (setf taken (start-goals robot only taken at-once))
+      (unless (or (goals-for robot only :waiting) (goals-for robot only :active))
+        (return taken))
+      (wait-for changed :timeout (next-deadline (goals-for robot only :waiting))))))
+
+(defun join-workers (robot only)
+  "Note that the calling task works on the agenda for ROBOT, or on the goal ONLY. Return its fluent.
+Signals MISUSE if another task works on the agenda for ROBOT."
+  (let ((agents (runner-agents (task-runner (current-task)))) (fluent (create-fluent "new goals")))
+    (when (and (null only)
+               (loop for agent in agents
+                     thereis (find-if (lambda (worker) (and (eq robot (first worker))
+                                                            (null (second worker))))
+                                      (goal-workers agent))))
+      (reject-use "A plan of ~A already works on the agenda. It works on goals that are installed ~
+                   meanwhile, too: call INSTALL-GOAL only."
+                  robot))
+    (push (list robot only fluent) (agent-note (task-agent (current-task)) 'goal-workers))
+    fluent))
+
+(defun leave-workers (fluent)
+  (let ((agent (task-agent (current-task))))
+    (setf (agent-note agent 'goal-workers)
+          (remove fluent (goal-workers agent) :key #'third))))
+
+(def-interp-proc work-on-goals (robot only at-once)
+  "Work on the goals for ROBOT, or only on the goal ONLY. Return how many were achieved."
+  (let ((changed (join-workers robot only)) (taken '()))
+    (evap-protect
+        (loop
+          (par (:tag more-goals
+                 (setf taken (append (look-after-goals robot only at-once changed) taken))))
+          ;; Others may have come while the last tasks cleaned up.
+          (unless (goals-for robot only :waiting)
+            (return (count :achieved taken :key (lambda (goal) (goal-state (first goal)))))))
+      (leave-workers changed))))
+
+(def-interp-proc work-on-agenda (&key (at-once 8))
+  "Work on the goals of the agenda of the current run until none is waiting or active, also on goals
+that are installed meanwhile: on those for the robot of this plan, and those for no robot in
+particular. Work on at most AT-ONCE goals at the same time: first on the goals with the highest
+priority, and among equals the earliest deadline. Each is a task, such as goal 3 (bring cup table).
+Return the number of goals achieved. Signals MISUSE if a plan already works on the agenda for the
+robot."
+  (with-task-variables ((resources* (or resources* (list :resources))))
+    (work-on-goals (rpl-robot) nil at-once)))
+
+(defun process-goal-agenda ()
+  "Work on the goals of the agenda of the current run, by the plan WORK-ON-AGENDA, until none is
+left. Return the number of goals achieved. In a plan, call WORK-ON-AGENDA. (From RAP.)"
+  (run-plan 'work-on-agenda))
+
+(def-interp-proc work-on-goal (number)
+  "Work on the goal NUMBER only."
+  (with-task-variables ((resources* (list :resources)))
+    (work-on-goals (rpl-robot) number 1)))
+
+(defun execute-goal (goal &optional (priority 0) deadline)
+  "Work on GOAL only, as INSTALL-GOAL and PROCESS-GOAL-AGENDA do. Return true if it is achieved.
+Signals WRONG-ARGUMENT. (From RAP.)"
+  (let ((number (install-goal goal priority deadline)))
+    (run-plan 'work-on-goal number)
+    (eq :achieved (goal-state number))))
