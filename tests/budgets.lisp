@@ -21,7 +21,7 @@
     (rpl-robot 6) (ways 6) (libraries 6) (cli-hostile 6) (inference-coverage 5)
     (floors 5) (manual-3-4-2 5) (readme 5) (plots 5) (journals 4) (cli-files 4) (cli-sessions 4)
     (experiment-replay 4) (plans 4) (experiment-compare 4) (world 4) (looking 4) (determinism 4)
-    (rpl-agents 4) (robot-traffic 4))
+    (rpl-agents 4) (robot-traffic 4) (rap 8))
   "How many seconds suites may take: a list of lists (suite seconds).")
 
 (defvar *seconds* (make-hash-table) "How many seconds each suite has taken, in these runs.")
