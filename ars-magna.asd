@@ -202,15 +202,17 @@
                  (:file "plans-errands") (:file "plans-locks") (:file "trials")
                  (:file "plans-searching") (:file "recognising") (:file "plans-recognising")
                  (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))
-   (:module "worlds/testbeds" :serial t
-    :components ((:file "package") (:file "tileworld-holes") (:file "tileworld-cameras")
-                 (:file "tileworld-foresight") (:file "tileworld-tiles")
-                 (:file "tileworld-tiles-agents") (:file "tileworld-tiles-camera")
-                 (:file "tileworld-wind") (:file "tileworld-wind-agents")
-                 (:file "pursuit") (:file "pursuit-modelling")
-                 (:file "truckworld") (:file "truckworld-actions") (:file "truckworld-work")
-                 (:file "truckworld-agents") (:file "truckworld-raps")
-                 (:file "truckworld-testbed")))))
+   (:module "worlds/testbeds/tileworld" :serial t
+    :components ((:file "package") (:file "holes") (:file "cameras") (:file "foresight")))
+   (:module "worlds/testbeds/tileworld-tiles" :serial t
+    :components ((:file "package") (:file "tiles") (:file "agents") (:file "camera")))
+   (:module "worlds/testbeds/tileworld-wind" :serial t
+    :components ((:file "package") (:file "wind") (:file "agents")))
+   (:module "worlds/testbeds/pursuit" :serial t
+    :components ((:file "package") (:file "pursuit") (:file "modelling")))
+   (:module "worlds/testbeds/truckworld" :serial t
+    :components ((:file "package") (:file "country") (:file "actions") (:file "work")
+                 (:file "agents") (:file "raps") (:file "testbed")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"

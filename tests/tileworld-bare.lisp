@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.tests)
 
-;;; The rules of worlds/testbeds/tileworld-holes.lisp, played on given holes by arithmetic alone.
+;;; The rules of worlds/testbeds/tileworld/holes.lisp, played on given holes by arithmetic alone.
 ;;; Times are numbers of world units, not rounded. The agent is where it is only at the ends of
 ;;; steps and of waits, so nothing happens between them.
 

@@ -1,4 +1,4 @@
-;;;; truckworld.lisp -- Truckworld: places, roads, weather, parcels, and what happens by itself.
+;;;; country.lisp -- Truckworld: places, roads, weather, parcels, and what happens by itself.
 
 ;;; Twelve places are the crossings of a lattice of roads, three cells wide. The seed chooses which
 ;;; roads exist, their surfaces, the depots where parcels appear, pumps and drums. All that happens

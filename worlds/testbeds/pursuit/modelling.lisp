@@ -1,4 +1,4 @@
-;;;; pursuit-modelling.lisp -- predators that model what the others will do, and one that forks.
+;;;; modelling.lisp -- predators that model what the others will do, and one that forks.
 
 (in-package :ars-pursuit)
 (in-readtable :nisp)

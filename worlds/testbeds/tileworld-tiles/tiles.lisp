@@ -1,4 +1,4 @@
-;;;; tileworld-tiles.lisp -- Tileworld: tiles to push into holes (Pollack and Ringuette 1990).
+;;;; tiles.lisp -- Tileworld: tiles to push into holes (Pollack and Ringuette 1990).
 
 ;;; Tiles, holes and obstacles appear and disappear on a floor of 15 x 15 cells. A hole has several
 ;;; cells; each is filled by a tile. The agent steps and pushes by ROBOT-PUSH; a step takes 2 ticks.

@@ -1,4 +1,4 @@
-;;;; truckworld-actions.lisp -- what the truck can do: commands that take time, cost fuel and fail.
+;;;; actions.lisp -- what the truck can do: commands that take time, cost fuel and fail.
 
 ;;; An action is a command of the simulator: for the prompt, for continuations and, as RPL-..., for
 ;;; plans. If ATOMIC* is true, an action has its effect when it begins; then the clock is skipped,

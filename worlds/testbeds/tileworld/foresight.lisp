@@ -1,4 +1,4 @@
-;;;; tileworld-foresight.lisp -- two agents of Tileworld: one forks, the other knows the future.
+;;;; foresight.lisp -- two agents of Tileworld: one forks, the other knows the future.
 
 (in-package :ars-testbeds)
 (in-readtable :nisp)

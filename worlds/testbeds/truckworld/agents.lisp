@@ -1,4 +1,4 @@
-;;;; truckworld-agents.lisp -- agents of Truckworld: how they choose where to go.
+;;;; agents.lisp -- agents of Truckworld: how they choose where to go.
 
 (in-package :ars-testbeds.trucks)
 (in-readtable :nisp)

@@ -1,4 +1,4 @@
-;;;; tileworld-cameras.lisp -- agents of Tileworld that know only what their camera has seen.
+;;;; cameras.lisp -- agents of Tileworld that know only what their camera has seen.
 
 (in-package :ars-testbeds)
 (in-readtable :nisp)

@@ -1,4 +1,4 @@
-;;;; truckworld-raps.lisp -- an agent of Truckworld made of reactive action packages (RAPs).
+;;;; raps.lisp -- an agent of Truckworld made of reactive action packages (RAPs).
 
 ;;; The memory has what the truck has seen: (at truck place), (parcel id place destination value
 ;;; deadline weight), (aboard id destination value deadline weight). The agenda has a goal for each

@@ -1,4 +1,4 @@
-;;;; tileworld-wind-agents.lisp -- agents of NASA Tileworld, which carry tiles to their places.
+;;;; agents.lisp -- agents of NASA Tileworld, which carry tiles to their places.
 
 (in-package :ars-testbeds.wind)
 (in-readtable :nisp)

@@ -1,4 +1,4 @@
-;;;; tileworld-wind.lisp -- NASA Tileworld: a robot carries tiles to their places, wind moves them.
+;;;; wind.lisp -- NASA Tileworld: a robot carries tiles to their places, wind moves them.
 
 ;;; A tile is a polyomino of several things that move as one: a gust of wind moves all tiles that
 ;;; the robot does not hold the same way, a homogeneous event (manual 1.2). A step takes 2 ticks.

@@ -1,4 +1,4 @@
-;;;; tileworld-tiles-agents.lisp -- how to push tiles into holes, and agents that do.
+;;;; agents.lisp -- how to push tiles into holes, and agents that do.
 
 (in-package :ars-testbeds.tiles)
 (in-readtable :nisp)

@@ -1,4 +1,4 @@
-;;;; truckworld-testbed.lisp -- Truckworld as a testbed: how it is scored, and what is claimed.
+;;;; testbed.lisp -- Truckworld as a testbed: how it is scored, and what is claimed.
 
 (in-package :ars-testbeds.trucks)
 (in-readtable :nisp)

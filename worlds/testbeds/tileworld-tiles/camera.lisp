@@ -1,4 +1,4 @@
-;;;; tileworld-tiles-camera.lisp -- an agent of Tileworld with tiles that sees by its camera.
+;;;; camera.lisp -- an agent of Tileworld with tiles that sees by its camera.
 
 (in-package :ars-testbeds.tiles)
 (in-readtable :nisp)

@@ -1,4 +1,4 @@
-;;;; truckworld-work.lisp -- what agents of Truckworld believe, find ways, and do at a place.
+;;;; work.lisp -- what agents of Truckworld believe, find ways, and do at a place.
 
 (in-package :ars-testbeds.trucks)
 (in-readtable :nisp)

@@ -1,4 +1,4 @@
-;;;; tileworld-holes.lisp -- Tileworld with holes only (Kinny and Georgeff 1991).
+;;;; holes.lisp -- Tileworld with holes only (Kinny and Georgeff 1991).
 
 ;;; A tick is a unit of the world's clock, or half of one if DYNAMISM* is 1, since a step must last
 ;;; two ticks to turn and drive. So no time is rounded.
