@@ -165,3 +165,31 @@
              (is (every (lambda (text) (string= "" text)) (experiment:sample-errors sample)))
              (reduce #'+ (experiment:sample-measure results sample "share"))))
       (is (< (total (second samples)) (total (first samples)))))))
+
+(defmacro check-new-lists (&rest pairs)
+  "Check, for each pair (run-variable function), that FUNCTION returns a new list of its items."
+  `(progn ,@(loop for (variable function) in pairs
+                  collect `(progn (setf ,variable (list 1 2 3))
+                                  (is (equal '(3 2 1) (sort (,function) #'>)))
+                                  (is (equal '(1 2 3) ,variable) "~A" ',function)))))
+
+(test testbeds.give-agents-lists-that-they-may-sort
+  (run:with-simulation ('ars-testbeds:tiler)
+    (check-new-lists (ars-testbeds::*holes* ars-testbeds:open-holes)
+                     (ars-testbeds.tiles::*holes* ars-testbeds.tiles:holes)
+                     (ars-testbeds.tiles::*tiles* ars-testbeds.tiles:tiles)
+                     (ars-testbeds.tiles::*obstacles* ars-testbeds.tiles:obstacles)
+                     (ars-testbeds.wind::*tiles* ars-testbeds.wind:tiles)
+                     (ars-testbeds.trucks::*depots* ars-testbeds.trucks:depots)
+                     (ars-testbeds.trucks::*pumps* ars-testbeds.trucks:pumps))))
+
+(test testbeds.give-agents-the-cargo-and-cells-to-sort
+  (let ((hole (list 1 100 0 900 1 2)))
+    (is (equal '(2 1) (nreverse (ars-testbeds.tiles:hole-cells hole))))
+    (is (equal '(1 100 0 900 1 2) hole)))
+  (run:with-simulation ('ars-testbeds.trucks:truck)
+    (let ((bin (robot:robot-storage-bin ars-testbeds.trucks:truck 1)))
+      (setf (robot::location-contents bin) (list 1 2 3))
+      (is (equal '(3 2 1) (nreverse (ars-testbeds.trucks:cargo))))
+      (is (equal '(1 2 3) (robot:storage-bin-contents bin)))
+      (setf (robot::location-contents bin) '()))))

@@ -36,11 +36,12 @@
 (define-run-variable *score* 0 "The sum of what the filled holes were worth.")
 (define-run-variable *filled* 0 "How many holes were filled.")
 
-(defun holes () "Return a list of the open holes, the newest first." *holes*)
-(defun obstacles () "Return a list of the cells of obstacles, things." *obstacles*)
-(defun tiles () "Return a list of the tiles, things, the newest first." *tiles*)
+(defun holes () "Return a new list of the open holes, the newest first." (copy-list *holes*))
+(defun obstacles () "Return a new list of the cells of obstacles, things." (copy-list *obstacles*))
+(defun tiles () "Return a new list of the tiles, things, the newest first." (copy-list *tiles*))
 (defun hole-id (hole) "Return the number of HOLE; a newer hole has a larger one." (first hole))
-(defun hole-cells (hole) "Return the cells of HOLE to fill, things." (cddddr hole))
+(defun hole-cells (hole) "Return a new list of the cells of HOLE to fill, things."
+  (copy-list (cddddr hole)))
 (defun find-hole (id) "Return the open hole ID, or NIL." (assoc id *holes*))
 (defun game-over-p () "True if the game has ended." (<= (* 2 steps*) (simulation-tick)))
 

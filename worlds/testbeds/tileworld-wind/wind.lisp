@@ -32,7 +32,7 @@
 
 (defrobot carrier (windy-floor (8.5 8.5) 0) :cameras ((6.28 1000)) :hands (100))
 
-(defun tiles () "Return a list of the tiles." *tiles*)
+(defun tiles () "Return a new list of the tiles." (copy-list *tiles*))
 (defun tile-thing (tile) "Return the first cell of TILE, a thing, which can be grasped."
   (fourth tile))
 (defun tile-target (tile) "Return the place of TILE, the cell (x y) of its first cell."

@@ -73,7 +73,7 @@
 (defmeasure filled "How many holes were filled." *filled*)
 
 ;;; For agents: what they can see and do.
-(defun open-holes () "Return a list of the open holes, the newest first." *holes*)
+(defun open-holes () "Return a new list of the open holes, the newest first." (copy-list *holes*))
 (defun hole-score (hole) "Return the score of HOLE, from 1 to 10." (get-attribute hole :score))
 (defun game-over-p () "True if all holes have closed." (and (<= holes* *opened*) (null *holes*)))
 

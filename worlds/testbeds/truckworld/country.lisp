@@ -72,8 +72,8 @@
 (define-run-variable *place* 0 "The place where the truck is; NIL on a road.")
 (define-run-variable *leg* '() "The places at both ends of the road that the truck is on.")
 
-(defun depots () "Return a list of the places where parcels appear." *depots*)
-(defun pumps () "Return a list of the places with a pump." *pumps*)
+(defun depots () "Return a new list of the places where parcels appear." (copy-list *depots*))
+(defun pumps () "Return a new list of the places with a pump." (copy-list *pumps*))
 (defun raining-p () "True if it rains." *raining*)
 (defun wetness () "Return how wet all surfaces are, from 0 to 1." *wetness*)
 (defun here () "Return the place where the truck is; NIL on a road." *place*)
@@ -114,8 +114,8 @@
 ;;; Physics.
 
 (defun cargo ()
-  "Return a list of the parcels in the bays, things."
-  (loop for bin across (robot-bins truck) append (storage-bin-contents bin)))
+  "Return a new list of the parcels in the bays, things."
+  (loop for bin across (robot-bins truck) append (copy-list (storage-bin-contents bin))))
 
 (defun cargo-weight () (loop for parcel in (cargo) sum (get-attribute parcel :weight)))
 
