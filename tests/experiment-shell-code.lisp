@@ -60,6 +60,10 @@
         (write-file "there/rows.csv" "~A4~A"
                     (subseq text 0 (+ place 9)) (subseq text (+ place 10))))
       (is-true (has-words-p (said-by (lambda () (go-on "7")))
+                            "line 2: This row has changed since its trial" "Delete the line"))
+      ;; Without check sums, the trial is run again.
+      (delete-file (placed "there/machine.csv"))
+      (is-true (has-words-p (said-by (lambda () (go-on "7")))
                             "Trial 1 " "its ticks is 3, and 4 in the table")))))
 
 ;;; Directories whose text was edited.

@@ -109,6 +109,76 @@
       (delete-file file)
       (is-true (walk directory :trials 1)))))
 
+;;; Rows that were changed after their trials, and rows of other experiments.
+
+(defun change-line (file number function)
+  "Let FUNCTION change line NUMBER, from 1, of FILE. NIL removes the line."
+  (let ((lines (file-lines file)))
+    (base:call-replacing-file
+     (lambda (out)
+       (loop for line in lines
+             for index from 1
+             for new = (if (= index number) (funcall function line) line)
+             do (when new (write-line new out))))
+     file)))
+
+(defun with-cell (line index text)
+  (string-right-trim '(#\Newline)
+                     (base:csv-line (loop for cell in (experiment::csv-fields line)
+                                          for place from 0
+                                          collect (if (= place index) text cell)))))
+
+(defun said-of-continuing (directory)
+  (handler-case (progn (walk directory :trials 6) "")
+    (experiment:damaged-table (condition) (princ-to-string condition))))
+
+(test rows.changed-in-the-middle-are-refused-and-run-again
+  (define-walk)
+  (loop for (index text trouble)
+          in '((9 "7.5" "line 4: This row has changed") (8 "99" "line 4: This row has changed")
+               (6 "failure" "line 4: This row has changed")
+               (7 "sleepy" "line 4: This row has changed")
+               (11 "0123456789ABCDEF" "line 4: This row has changed")
+               (0 "run" "line 4: this is a row of another experiment, run")
+               (1 "123" "other code or another configuration")
+               (2 "max-speed*=2" "other code or another configuration")
+               (2 "max-speed*=9" "line 4: The condition, factors and fingerprint")
+               (4 "77" "line 4: this row is of other seeds")
+               (8 "-3" "line 4: -3 cannot be the ticks"))
+        do (with-directories (directory)
+             (walk directory :trials 5)
+             (let* ((file (uiop:subpathname directory "rows.csv")) (before (base:file-text file)))
+               (change-line file 4 (lambda (line) (with-cell line index text)))
+               (let* ((damaged (base:file-text file))
+                      (said (handler-case (said-of-continuing directory)
+                              (base:misuse (condition) (princ-to-string condition)))))
+                 (is-true (search trouble said) "~A ~A: ~A" index text said)
+                 (is-true (or (search "elete" said) (search "another directory" said)))
+                 (is (string= damaged (base:file-text file))))
+               (change-line file 4 (constantly nil))
+               (is-true (walk directory :trials 5))
+               (is (string= before (base:file-text file)))))))
+
+(test rows.are-as-their-trials-wrote-them-whatever-they-contain
+  "Texts with commas, quotes, formulas and other letters have the same check sum when read again."
+  (define-for-test
+    (:robots ars-worlds:dot) (:vary (name "=a,b" "Zoe \"ë\"" "-")) (:run t)
+    (:measure (said (list name "+1,'" "é"))))
+  (with-directories (directory)
+    (dolist (trials '(2 3))
+      (is-true (experiment:run-experiment 'question :trials trials :workers 1 :stream nil
+                                                    :directory directory)))))
+
+(test rows.without-check-sums-are-not-compared
+  (define-walk)
+  (with-directories (directory)
+    (walk directory :trials 3)
+    (let ((file (uiop:subpathname directory "machine.csv")))
+      (change-line file 3 (lambda (line) (subseq line 0 (position #\, line :from-end t))))
+      (is-true (walk directory :trials 4))
+      (delete-file file)
+      (is-true (walk directory :trials 5)))))
+
 (test rows.with-characters-that-no-text-has-are-damaged
   (define-walk)
   (dolist (char (list (code-char 0) (code-char 27) (code-char #x9B)))

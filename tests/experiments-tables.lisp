@@ -77,7 +77,7 @@
     (walk directory :trials 3)
     (let ((lines (file-lines (uiop:subpathname directory "machine.csv"))))
       (is (= 7 (length lines)))
-      (is (= 7 (length (experiment::csv-fields (second lines))))))
+      (is (= 8 (length (experiment::csv-fields (second lines))))))
     (let ((text (base:file-text (uiop:subpathname directory "experiment.txt"))))
       (is (search "(run-experiment 'walk :trials 3" text))
       (is (search "defexperiment walk" text))

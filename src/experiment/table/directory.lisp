@@ -6,8 +6,8 @@
 
 ;;; rows.csv has a row for each trial and nothing that differs from run to run. series.csv, if the
 ;;; experiment has :each-tick, has a line for each tick of each trial. machine.csv says how long
-;;; each trial took, and where; experiment.txt how to repeat the experiment. One process at a time
-;;; writes there: it holds the lock of the file `.lock'.
+;;; each trial took, and where, with a checksum of its row; experiment.txt how to repeat the
+;;; experiment. One process at a time writes there: it holds the lock of the file `.lock'.
 
 (defstruct (store (:constructor make-store (path experiment)) (:copier nil))
   "The directory PATH, to which rows of EXPERIMENT are being written."
@@ -87,7 +87,7 @@ true if FILE has lines left. If FILE is no such table, change nothing and signal
     stream))
 
 (defparameter *machine-columns*
-  '("condition" "seed" "trial" "milliseconds" "worker" "process" "host"))
+  '("condition" "seed" "trial" "milliseconds" "worker" "process" "host" "row"))
 
 (defun open-table-of-machines (directory)
   "Return a stream that appends to machine.csv in DIRECTORY. Signals DAMAGED-TABLE."
@@ -95,7 +95,7 @@ true if FILE has lines left. If FILE is no such table, change nothing and signal
     (handler-case (open-table file *machine-columns*)
       (damaged-table (condition)
         (reject-table file (damaged-table-line condition)
-                      "~A Or delete this file: it only says how long each trial took, and where."
+                      "~A Or delete this file: it only has times and check sums of trials."
                       (damaged-table-trouble condition))))))
 
 (defun call-with-store (function experiment directory)
@@ -130,7 +130,7 @@ in the worker numbered WORKER."
          (texts (result-texts experiment result))
          (line (csv-line texts))
          (series (series-text experiment result))
-         (machine-line (csv-line (machine-texts result milliseconds worker)))
+         (machine-line (csv-line (machine-texts result milliseconds worker line)))
          (condition (result-condition result)))
     (with-lock ((store-lock store))
       (deferring-interrupts
@@ -144,11 +144,14 @@ in the worker numbered WORKER."
           (setf (gethash condition (store-samples store))
                 (texts-with-checksum texts experiment series)))))))
 
-(defun machine-texts (result milliseconds worker)
+(defun row-checksum (line) (format nil "~8,'0X" (text-checksum line)))
+
+(defun machine-texts (result milliseconds worker row)
   (list (condition-name (result-condition result))
         (integer-text (result-seed result)) (integer-text (result-trial result))
         (float-text (/ (round milliseconds 1/1000) 1000d0))
-        (integer-text worker) (integer-text (process-id)) (machine-instance)))
+        (integer-text worker) (integer-text (process-id)) (machine-instance)
+        (row-checksum row)))
 
 ;;; Existing rows. Their presence is a table from conditions to bits, one for each trial.
 
@@ -195,13 +198,38 @@ EXPERIMENT, or of a former condition if CONDITION is NIL."
                                    that of this run has ~D. Give another directory for these seeds."
                       trial seed expected)))))
 
+(defun recorded-checksums (directory)
+  "Return a table of the checksums of rows in machine.csv in DIRECTORY, by lists (condition trial)
+of texts. Lines without a checksum do not count. Of several lines of a trial, the last counts."
+  (let ((sums (make-hash-table :test 'equal)) (file (machine-file directory)))
+    (when (existing-path file)
+      (map-lines (lambda (line start number)
+                   (declare (ignore start number))
+                   (let ((texts (handler-case (csv-fields (line-text line)) (broken-line () '()))))
+                     (when (= (length texts) (length *machine-columns*))
+                       (setf (gethash (list (first texts) (third texts)) sums)
+                             (first (last texts))))))
+                 file))
+    sums))
+
+(defun check-row-unchanged (condition trial texts sums file number)
+  "TEXTS are line NUMBER of FILE, of TRIAL of CONDITION. Signal DAMAGED-TABLE if SUMS has another
+checksum for it."
+  (let ((sum (gethash (list (condition-name condition) (integer-text trial)) sums))
+        (now (row-checksum (csv-line texts))))
+    (unless (or (null sum) (string= sum now))
+      (reject-row file number "This row has changed since its trial: its check sum is ~A, and ~A ~
+                               in machine.csv."
+                  now sum))))
+
 (defun present-rows (experiment directory foreign &optional (sample (constantly nil)))
   "Return two values: a table of the rows of EXPERIMENT in DIRECTORY whose series are complete, and
 the index of the series. Call FOREIGN for each row with another fingerprint, and SAMPLE for each row
 in the table, with the row's condition and texts. Remove an incomplete last line. Signals
-DAMAGED-TABLE."
+DAMAGED-TABLE if a row is not of EXPERIMENT, or not as its trial left it."
   (let ((presence (make-hash-table :test 'eq)) (file (rows-file directory))
         (series (index-existing-series experiment directory))
+        (sums (recorded-checksums directory))
         (place (1+ (seed-column (columns experiment)))))
     (when (remove-incomplete-line file (columns experiment))
       (do-rows (texts file start number)
@@ -211,6 +239,8 @@ DAMAGED-TABLE."
             (funcall foreign condition texts))
           (check-row experiment condition texts file number)
           (when (and condition (series-complete-p series texts))
-            (funcall sample condition texts)
-            (note-trial-present condition (parse-integer (nth place texts)) presence)))))
+            (let ((trial (parse-integer (nth place texts))))
+              (check-row-unchanged condition trial texts sums file number)
+              (funcall sample condition texts)
+              (note-trial-present condition trial presence))))))
     (values presence series)))
