@@ -41,7 +41,7 @@
   "Return the one of LEVELS that VALUE names; NIL names the first. Signals UNKNOWN-NAME."
   (if (null value)
       (first levels)
-      (let ((text (if (stringp value) value (value-text value))))
+      (let ((text (if (stringp value) value (setting-text value))))
         (or (find text levels :test #'string-equal)
             (reject-name "value" text levels)))))
 

@@ -44,7 +44,7 @@ variables hold weakly: the keys of a table" :writable))
 
 (defun factor-text (name value)
   "Return the text in tables of VALUE, a value of the factor NAME."
-  (value-text (if (eq :robots name) (with-full-names value *robots-compared*) value)))
+  (setting-text (if (eq :robots name) (with-full-names value *robots-compared*) value)))
 
 (defun make-condition-name (case-name settings)
   (let ((words (append (and case-name (list (string-downcase case-name)))

@@ -112,6 +112,10 @@ that it is the same in each run."
     (:none "")
     (t (call-with-trial-syntax (lambda () (plain-value-text value))))))
 
+(defun setting-text (value)
+  "Return the text of VALUE, of a factor or knob, in tables: that of :NONE is not empty."
+  (if (eq :none value) "none" (value-text value)))
+
 ;;; Robots. Names that differ only in their packages are written in full.
 
 (defun names-in-value (value)

@@ -50,7 +50,7 @@
   (destructuring-bind ((knob . values) . settings) sweep
     (format stream "~%### ~A, by ~(~A~)~2%"
             (if settings (settings-text settings) "All other knobs at their defaults") knob)
-    (write-markdown-head (cons "agent" (mapcar #'value-text values)) stream)
+    (write-markdown-head (cons "agent" (mapcar #'setting-text values)) stream)
     (loop for row in (sweep-games testbed sweep)
           do (write-markdown-row
               (cons (agent-name-text (first (first row)))
@@ -69,7 +69,7 @@
   "Return a chart of the scores in ROWS, lists of games of one agent, by the knob of SWEEP."
   (destructuring-bind ((knob . values) . settings) sweep
     (let ((score (string-downcase (testbed-score testbed)))
-          (xs (loop for value in values collect (x-value (value-text value)))))
+          (xs (loop for value in values collect (x-value (setting-text value)))))
       (line-chart (loop for row in rows
                         collect (cons (agent-name-text (first (first row)))
                                       (loop for game in row

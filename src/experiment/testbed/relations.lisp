@@ -92,8 +92,7 @@ two gaps. SCORES-OF returns the scores of a game."
   "Return the text of SETTINGS, lists (knob value)."
   (format nil "~{~A~^ ~}"
           (loop for (name value) in settings
-                collect (format nil "~(~A~)=~A" name
-                                (if (eq :none value) "none" (value-text value))))))
+                collect (format nil "~(~A~)=~A" name (setting-text value)))))
 
 (defun side-text (side)
   (if (consp side)
@@ -110,4 +109,4 @@ two gaps. SCORES-OF returns the scores of a game."
         (:within (format nil "~A, within ~A" gap (value-text more)))
         (:not-worse (format nil "~A, interval ~:[above -~;below ~]~A" gap less (value-text more)))
         (:narrows (format nil "(~A) from ~(~A~) ~A to ~A" gap (first more)
-                          (value-text (second more)) (value-text (third more))))))))
+                          (setting-text (second more)) (setting-text (third more))))))))
