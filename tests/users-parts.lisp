@@ -62,6 +62,32 @@
                (is (search says (displayed)) "~A" command)
                (is-true (replays-p time:*simulation*))))))
 
+(command:define-command probe-linger (operation (probe probe) (ticks integer "for how many ticks"))
+    ()
+    ((:family :handling))
+    "Go on for TICKS, with no delay before."
+  (push ticks (probe-history probe))
+  (command:go-on operation 'end-lingering ticks))
+
+(defun end-lingering (operation) (command:succeed operation))
+
+(test commands.without-delay-that-go-on-are-interrupted-by-newer-ones
+  (loop for (wait . expected) in '((0 (:interrupt 1) (nil 4)) (2 (:interrupt 3) (nil 6))
+                                   (5 (nil 4) (nil 9)))
+        do (with-diver (:journal t)
+             (let ((probe (the-probe)) (answers '()))
+               (flet ((note (err &rest results)
+                        (declare (ignore results))
+                        (push (list err (run:simulation-tick)) answers)))
+                 (probe-linger probe 3 #'note)
+                 (run:run-ticks wait)
+                 (probe-linger probe 3 #'note)
+                 (run:run-ticks 10))
+               (is (equal expected (reverse answers)))
+               (is (= 2 (length (probe-history probe))) "each body has run once")
+               (is-false (search "Error in command" (displayed)))
+               (is-true (replays-p time:*simulation*))))))
+
 (test state.of-all-sorts-is-digested-and-copied
   (with-diver ()
     (let ((digest (run:state-digest)) (digests '()))

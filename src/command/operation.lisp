@@ -216,7 +216,8 @@ queue a message and end OPERATION with :FAILED."
                         (setf returned t))
                       origin)
       (unless (or (operation-finished-p operation)
-                  (and returned (event-pending-p operation)))
+                  ;; Pending or, if FREE-RESOURCE has begun it early, about to be interrupted.
+                  (and returned (or (event-pending-p operation) (event-queued-p operation))))
         (when returned (apply #'error-set (append origin '(" neither ended nor continued"))))
         (end-operation operation :failed)))))
 
@@ -244,7 +245,9 @@ queue a message and end OPERATION with :FAILED."
 (defun go-on (operation step &optional (delay 1))
   "Continue OPERATION with STEP in DELAY ticks. STEP names a function that takes an operation."
   (setf (operation-step operation) step)
-  (requeue-event (operation-agenda operation) operation (clamp delay 1 +longest-delay+)))
+  ;; An operation that FREE-RESOURCE has begun early is still in the queue, and goes on no more.
+  (unless (event-queued-p operation)
+    (requeue-event (operation-agenda operation) operation (clamp delay 1 +longest-delay+))))
 
 (defun go-on-now (operation step)
   "Continue OPERATION with STEP from this tick on. STEP names a function that takes an operation."
@@ -258,13 +261,19 @@ queue a message and end OPERATION with :FAILED."
          operation (resource-for-users operation) (operation-arguments operation)))
 
 (defun free-resource (operation agenda rival)
-  "Free the resource of OPERATION, on which the event RIVAL is pending. Interrupt RIVAL, or execute
-RIVAL if it takes no time, such as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWARD (reading 77)."
-  (cond ((and (operation-p rival) (command-instant-p (operation-command rival)))
-         (cancel-event agenda rival)
-         (call-step rival 'start-body))
-        (t (note-interruption rival operation (1+ (agenda-tick agenda)))
-           (interrupt-event agenda rival))))
+  "Free the resource of OPERATION, on which the event RIVAL is pending. If RIVAL has no delay and
+has not begun, such as a ROBOT-SET-SPEED just before a ROBOT-GO-FORWARD, execute RIVAL (reading 77).
+Then interrupt RIVAL, unless it has ended."
+  (flet ((tell () (note-interruption rival operation (1+ (agenda-tick agenda)))))
+    (cond ((and (operation-p rival) (command-instant-p (operation-command rival))
+                (not (body-begun-p rival)))
+           (cancel-event agenda rival)
+           (call-step rival 'start-body)
+           (unless (operation-finished-p rival)
+             (tell)
+             (interrupt-operation rival)))
+          (t (tell)
+             (interrupt-event agenda rival)))))
 
 (defgeneric record-interrupted-operation (name operation rival)
   (:documentation "Record that OPERATION, of the command NAME, interrupts RIVAL.")

@@ -34,7 +34,7 @@
    (priority 0 fixnum "the event's priority; higher ones come first")
    (pending-p nil boolean "the event waits for its tick" :export))
   (:link
-   (queued-p nil boolean "a bucket holds the event, pending or cancelled")
+   (queued-p nil boolean "a bucket holds the event, pending or cancelled" :export)
    (next nil (or null event) "the event after it in its bucket; the first after the last")))
 
 (defmethod reference ((event event))
