@@ -358,3 +358,18 @@
       (run:run-ticks 1)
       ;; In a replay its reference must not mean the designator that has its number by then.
       (is (equal '(-1 0) (subseq (ars-magna.base:reference old) 2 4))))))
+
+(test run.that-is-clean-keeps-noise-that-is-given
+  (run:with-simulation ('ars-worlds:dot :clean t :parameters '((motion-noise* 1/5)))
+    (is (eql 1/5 base:motion-noise*))
+    (is (eql 0d0 base:prob-lose-track*))
+    (is-true base:no-sensor-error*)
+    (base:clean-simulation)
+    (is (eql 1/5 base:motion-noise*))
+    (base:dirty-simulation)
+    (is (eql 1/5 base:motion-noise*))
+    (is (plusp base:prob-lose-track*))
+    (is-false base:no-sensor-error*))
+  (run:with-simulation ('ars-worlds:dot :clean t :parameters '((base:no-sensor-error* nil)))
+    (is-false base:no-sensor-error*)
+    (is (eql 0d0 base:motion-noise*))))

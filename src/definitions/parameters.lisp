@@ -4,7 +4,7 @@
 
 (export '(parameter check-parameter-value describe-type define-parameter non-default-parameters
           check-parameters *noise-before-cleaning* ticks-for noise-of-step per-tick-drift
-          per-tick-probability))
+          per-tick-probability remove-noise-except))
 
 ;;; Each parameter is a special variable that users may SETF. Its one definition gives its
 ;;; documentation, the check of its value, its noiseless value and its line in the prompt's list. A
@@ -128,6 +128,16 @@ WRONG-ARGUMENT if the new value is of the wrong type or out of range."
   "The parameters that CLEAN-SIMULATION has changed, with their former values: a list of lists
 (symbol value); NIL in a dirty simulation.")
 
+(defun remove-noise-except (names)
+  "As CLEAN-SIMULATION, but do not change the parameters with the symbols NAMES."
+  (unless *noise-before-cleaning*
+    (setf *noise-before-cleaning*
+          (loop for parameter in (registry-objects *parameters*)
+                when (and (eq (parameter-kind parameter) :noise)
+                          (not (member (parameter-symbol parameter) names)))
+                  collect (list (parameter-symbol parameter) (parameter-value parameter))
+                  and do (setf (parameter-value parameter) (parameter-clean parameter))))))
+
 (public clean-simulation)
 (defun clean-simulation ()
   "Remove all noise and error: set every noise parameter to its noiseless value and NO-SENSOR-ERROR*
@@ -135,12 +145,7 @@ to T. DISCRETE-NOISE-FACTOR*, CONTINUOUS-NOISE-FACTOR*, STANDARD-MATCH-THRESHOLD
 rangefinders do not change, because they have no effect while NO-SENSOR-ERROR* is true. Delays and
 limits do not change either.
 A second call changes nothing. Return nothing (manual, chapter 4; reading 117)."
-  (unless *noise-before-cleaning*
-    (setf *noise-before-cleaning*
-          (loop for parameter in (registry-objects *parameters*)
-                when (eq (parameter-kind parameter) :noise)
-                  collect (list (parameter-symbol parameter) (parameter-value parameter))
-                  and do (setf (parameter-value parameter) (parameter-clean parameter)))))
+  (remove-noise-except '())
   (values))
 
 (public dirty-simulation)

@@ -50,7 +50,9 @@ name. The other arguments are options of WITH-SIMULATION."
    parameters
    (lambda ()
      (check-parameters)
-     (when clean (clean-simulation))
+     (when clean
+       (remove-noise-except (loop for (name) in parameters
+                                  collect (parameter-symbol (find-parameter name)))))
      (let ((*message-queue* (make-message-queue :error-policy errors)))
        (call-in-headless-run function
                              (fresh-simulation robots :seed seed :journal journal :ghosts ghosts
@@ -197,8 +199,8 @@ of a name means another robot like NAME, named OTHER-NAME, which starts at (X,Y)
 missing; X, Y and A are evaluated. Options:
 - SEED, an integer, determines all randomness.
 - PARAMETERS, a list of lists (name value), binds parameters; others keep their current values.
-- CLEAN, if true, calls CLEAN-SIMULATION after binding PARAMETERS, so noise in PARAMETERS is
-  removed, too.
+- CLEAN, if true, removes noise as CLEAN-SIMULATION does, except from parameters in PARAMETERS. For
+  errors of sensors, PARAMETERS must also have (no-sensor-error* nil).
 - JOURNAL, if true, makes the run keep a journal. KEEP makes the run keep forks, so that it can be
   rewound, see KEEP-FORKS.
 - GHOSTS, if true, makes robots neither block nor see each other.
