@@ -48,13 +48,15 @@ that the attributes can have; a range begins with its lower end"
 (defun found-message (operation designators)
   (phrase "~A found ~{~A~^, ~}" (operation-resource operation) (copy-list designators)))
 
-(defun designate-sightings (camera sightings)
-  "Return designators for those of CAMERA's SIGHTINGS that are still true."
-  (let ((designators (loop for sighting in sightings collect (designate sighting camera))))
+(defun designate-sightings (operation sightings)
+  "Return designators for those SIGHTINGS of OPERATION's camera that are still true."
+  (let* ((camera (operation-resource operation))
+         (*request-origin* (request-asker operation))
+         (designators (loop for sighting in sightings collect (designate sighting camera))))
     (remove-if-not #'designator-valid-p (remove nil designators))))
 
 (defun designate-first (operation sightings)
-  (let ((designator (first (designate-sightings (operation-resource operation) sightings))))
+  (let ((designator (first (designate-sightings operation sightings))))
     (if designator
         (succeed operation designator)
         (fail-with operation :designator-not-found))))
@@ -63,8 +65,7 @@ that the attributes can have; a range begins with its lower end"
                                              (proper-list-of-p #'sighting-p
                                                                (operation-subject operation))))
   "End OPERATION with designators for all sightings in its subject, a list."
-  (let ((designators (designate-sightings (operation-resource operation)
-                                          (operation-subject operation))))
+  (let ((designators (designate-sightings operation (operation-subject operation))))
     (if designators
         (succeed operation designators)
         (fail-with operation :designator-not-found))))

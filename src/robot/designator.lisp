@@ -40,7 +40,9 @@ robot's heading, in radians, not normalised (manual 3.4.1)" :addition)
    (bearing-p nil boolean "the denotation was seen from far enough to have a direction")
    (relative-bearing 0d0 double-float "the true direction from the robot's heading, in radians")
    (swing 0d0 double-float "by how much the direction changed in the tick REFRESHED, in radians")
-   (refreshed -1 fixnum "the tick in which the designator was last updated")))
+   (refreshed -1 fixnum "the tick in which the designator was last updated"))
+  (:memory
+   (origin *request-origin* t "the origin of the request that found it, for messages")))
 
 (setf (documentation 'make-designator 'function)
       "Return a new designator, which no robot has numbered yet.")

@@ -96,7 +96,8 @@ had no track. See reading 161."
   "Make DESIGNATOR invalid, free its number and end its tracks. Queue warnings unless SILENTLY."
   (when (designator-valid-p designator)
     (unless silently
-      (let ((*reported-robot* (robot-name (designator-robot designator))))
+      (let ((*reported-robot* (robot-name (designator-robot designator)))
+            (*request-origin* (or (designator-origin designator) *request-origin*)))
         (warning-set (format nil "Removing ~A" designator))))
     (dolist (camera (tracking-cameras designator))
       (end-track-keeping-designator camera :lost-track

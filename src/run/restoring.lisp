@@ -85,7 +85,8 @@ of each number, or NIL for an external object."
                   (kind-slot-reader field) (kind-slot-writer field)))
 
 (defparameter *newer-slots*
-  '((ars-magna.robot:mind "UNPAID")
+  '((ars-magna.robot:designator "ORIGIN")
+    (ars-magna.robot:mind "UNPAID")
     (ars-magna.world:world "RUN-VARIABLES")
     (ars-magna.robot:mind "PLAN-TIMES")
     (ars-magna.robot:robot "RADIO")
