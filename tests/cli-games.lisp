@@ -35,9 +35,19 @@
                                 ("trial tileworld cautious,bold-any 1" "several agents")
                                 ("trial tileworld cautious,hole=3 1" "no knob hole")
                                 ("trial tileworld cautious,holes=0 1" "from 1 to 100000")
+                                ("trial tileworld cautious 0" "1 to 1e9, not 0" "first seed, 1.")
+                                ("trial tileworld cautious,tuning 0" "first seed, 1000001.")
                                 ("trial tileworl" "could be" "TILEWORLD-WIND")
                                 ("failures pursuit" "was not run here"))
         do (is-true (apply #'has-words-p (complaint line) words) "~A" line)))
+
+(test game.echo-off-hides-what-comes-of-commands-of-agents
+  "Designators that agents have found are removed when robots leave: manual 3.4.1."
+  (flet ((text (&rest lines)
+           (joined (apply #'type-batch "trial tileworld-wind flexible 1"
+                          (append lines '("step 60"))))))
+    (is-true (search "Removing Designator" (text)))
+    (is-false (search "Removing Designator" (text "echo off")))))
 
 (test game.agents-are-listed
   (let ((text (joined (type-batch "trial" "trial tileworld-wind"))))

@@ -297,14 +297,15 @@ And more."
              (experiment:run-experiment 'question :directory directory :stream nil))
            (text (results)
              (with-output-to-string (out) (experiment:print-results results out))))
-      (is (null (search "no longer" (text (results 1 5 9)))))
+      (is (null (search "earlier runs" (text (results 1 5 9)))))
       (loop with now = (results 1 9)
             for results in (list now (experiment:read-results directory))
             for text = (text results)
-            do (is (search "question: 2 conditions, 2 trials each; and 1 that it no longer has"
+            do (is (search "question: 2 conditions, 2 trials each; the table also has 1 condition"
                            text))
+               (is (search "earlier runs, see" text))
                (is (< (search "1  100 (" text) (search "9  100 (" text)
-                      (search "Conditions that the experiment no longer has:" text)
+                      (search "Conditions of earlier runs, which the last run did not have:" text)
                       (search "5  100 (" text)))))))
 
 (test report.tells-of-errors-when-the-experiment-ends
@@ -316,3 +317,17 @@ And more."
     (is-true (has-words-p (said) "2 trials had errors, the first: Boom."))
     (define-for-test (:robots ars-worlds:dot) (:run t))
     (is (not (mentions-p (said) "had errors")))))
+
+(test report.shows-none-as-a-value-of-a-factor
+  (define-for-test (:robots ars-worlds:dot) (:vary (way :none :some)) (:run t)
+    (:measure (size (identity :none))))
+  (with-directories (directory)
+    (let ((results (experiment:run-experiment 'question :trials 2 :directory directory
+                                                        :stream nil)))
+      (is (equal '("way=none" "way=some") (experiment::results-conditions results)))
+      (is-true (search (format nil "~%  none  100 (")
+                       (with-output-to-string (out) (experiment:print-results results out))))
+      (let ((cells (experiment::csv-fields (second (table-lines directory)))))
+        (is (equal '("way=none" "none") (subseq cells 2 4)))
+        (is (string= "" (nth 9 cells)) "a measure without a value is an empty cell: ~S" cells))
+      (is-true (experiment:compare-conditions results :some :none :stream nil)))))

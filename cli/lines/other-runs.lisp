@@ -235,6 +235,7 @@ current trial."
                (write-experiment-conditions question))))
         (t (multiple-value-bind (experiment condition)
                (resolve-condition (resolve-question name) condition)
+             (check-trial-number experiment number)
              (open-trial-in-session session
                                     (make-open-trial experiment condition number directory))))))
 

@@ -98,6 +98,13 @@ is a number, counted from 1, or a part of a name. If QUESTION is a testbed, see 
       (values question
               (find-condition question (or (ignore-errors (parse-integer text)) text)))))
 
+(defun check-trial-number (experiment number)
+  "Signal BAD-LINE unless EXPERIMENT can have a trial of the NUMBER."
+  (unless (<= 1 number 1000000000)
+    (reject-line "Trials of ~(~A~) have the numbers 1 to 1e9, not ~D. Trial 1 has the first seed, ~
+                  ~D."
+                 (experiment-name experiment) number (trial-seed experiment 1))))
+
 ;;; What is there.
 
 (defun write-experiments ()

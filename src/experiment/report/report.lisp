@@ -255,7 +255,8 @@ page, else the condition's name."
 (defun write-heading (results summaries former stream)
   (let* ((name (sample-experiment (first (results-samples results))))
          (question (question-of name)))
-    (write-wrapped (format nil "~A: ~D condition~:P, ~A~@[; and ~D that it no longer has~]" name
+    (write-wrapped (format nil "~A: ~D condition~:P, ~A~@[; the table also has ~D ~
+                                  condition~:P of earlier runs, see below~]" name
                            (length summaries) (trials-text summaries)
                            (and former (length former)))
                    stream)
@@ -281,7 +282,7 @@ experiment has none of the conditions of SUMMARIES."
     (write-heading results present former stream)
     (write-summaries results present stream)
     (when former
-      (format stream "~%Conditions that the experiment no longer has:~%")
+      (format stream "~%Conditions of earlier runs, which the last run did not have:~%")
       (write-summaries results former stream))))
 
 (addition print-results)
