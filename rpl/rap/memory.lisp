@@ -12,6 +12,11 @@ which the fact was last added.")
 
 (defun now () (simulation-tick))
 
+(defmacro changing-memory (&body body)
+  "Run BODY, which computes a new value of the memory from its old value, while the run stands
+still: no change by another thread comes in between."
+  `(asking ((current-simulation)) ,@body))
+
 ;;; Patterns.
 
 (defun variable-p (object)
@@ -91,24 +96,27 @@ extended bindings, or :FAIL."
   "Add FACT, a list such as (at truck depot), to the memory of the current run, or renew its tick if
 it is there. Return FACT. Signals WRONG-ARGUMENT. (From RAP.)"
   (check-fact 'memory-add fact)
-  (setf main-memory*
-        (cons (list fact (now)) (remove-if (matching-entry-p fact) main-memory*)))
+  (changing-memory
+    (setf main-memory*
+          (cons (list fact (now)) (remove-if (matching-entry-p fact) main-memory*))))
   fact)
 
 (defun memory-delete (pattern)
   "Delete all facts that match PATTERN, such as (at ?thing depot), from the memory of the current
 run. Return how many there were. Signals WRONG-ARGUMENT. (From RAP.)"
   (check-pattern 'memory-delete pattern)
-  (let* ((entries main-memory*) (kept (remove-if (matching-entry-p pattern) entries)))
-    (unless (= (length kept) (length entries)) (setf main-memory* kept))
-    (- (length entries) (length kept))))
+  (changing-memory
+    (let* ((entries main-memory*) (kept (remove-if (matching-entry-p pattern) entries)))
+      (unless (= (length kept) (length entries)) (setf main-memory* kept))
+      (- (length entries) (length kept)))))
 
 (defun memory-set (fact)
   "Add FACT, and delete the facts that differ from it in the last element only: after (memory-set
 '(at truck depot)), the truck is nowhere else. Return FACT. Signals WRONG-ARGUMENT."
   (check-fact 'memory-set fact)
-  (memory-delete (append (butlast fact) (list '?)))
-  (memory-add fact))
+  (changing-memory
+    (memory-delete (append (butlast fact) (list '?)))
+    (memory-add fact)))
 
 (defun memory-tick (fact)
   "Return the tick at which FACT was last added to the memory of the current run, or NIL."

@@ -259,10 +259,7 @@ and this code works in another run."
           (unless (simulation-over simulation)
             (record-operation simulation operator arguments)))
         (permitting-changes (world) (funcall function)))
-      (let ((by-itself-p (continues-in-forks-p)))
-        (asking (timeline)
-          (let ((*continues-in-forks-p* by-itself-p))
-            (perform-change world operator arguments))))))
+      (asking (timeline) (perform-change world operator arguments))))
 
 (defmethod rebound-parameters ((timeline timeline) world)
   (let ((simulation (world-simulation world)))

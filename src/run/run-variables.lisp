@@ -168,12 +168,12 @@ error in an init form is signalled when the variable is first used, since many r
 
 ;; Many variables are defined. A run sets few of them, but often.
 (defun store-run-variable (name value world)
-  (let ((entry (find-variable-entry name world)))
-    (cond (entry
-           (unless (eq :set (third entry)) (move-variable-entry-to-front entry world))
-           (setf (second entry) value
-                 (third entry) :set))
-          (t (add-variable-entry name value :set world)))))
+  (let ((entry (or (find-variable-entry name world)
+                   ;; Another thread may read the variable and so add its entry first.
+                   (add-variable-entry name value :set world))))
+    (unless (eq :set (third entry)) (move-variable-entry-to-front entry world))
+    (setf (second entry) value
+          (third entry) :set)))
 
 (defun set-run-variable (name value)
   "Set the run variable NAME to VALUE in the current run. Return VALUE."

@@ -94,14 +94,16 @@ current one, as ASK calls a function. Return the values of BODY."
            ;; If no thread owns the world any more, this one answers the pending questions.
            (call-with-custody custody (constantly nil) (constantly nil))))
 
-(defun function-with-seclusion (function)
-  "Return a function that calls FUNCTION, in any thread, with the seclusion of the current code."
-  (let ((seclusion *seclusion*))
-    (lambda () (let ((*seclusion* seclusion)) (funcall function)))))
+(defun function-as-of-here (function)
+  "Return a function that calls FUNCTION, in any thread, with the seclusion of the current code. If
+forks repeat what the current code does, they repeat what FUNCTION does."
+  (let ((seclusion *seclusion*) (by-itself-p (continues-in-forks-p)))
+    (lambda ()
+      (let ((*seclusion* seclusion) (*continues-in-forks-p* by-itself-p)) (funcall function)))))
 
 (defun ask-owner (custody function)
   (check-outside-ticks)
-  (let ((question (make-question (function-with-seclusion function))))
+  (let ((question (make-question (function-as-of-here function))))
     (atomic-push (lambda () (answer-question question)) (custody-questions custody))
     (wake-if-asleep custody)
     (in-any-case
@@ -114,7 +116,7 @@ current one, as ASK calls a function. Return the values of BODY."
 not wait for the result. FUNCTION is called with interrupts deferred, except within
 ALLOWING-INTERRUPTS. Return nothing."
   (let ((custody (timeline-custody (timeline-of object)))
-        (question (make-question (function-with-seclusion function))))
+        (question (make-question (function-as-of-here function))))
     (deferring-interrupts
       (atomic-push (lambda () (deferring-interrupts (answer-question question)))
                    (custody-questions custody))
