@@ -45,6 +45,23 @@ FILE as it is."
         (check-refused (lambda (file) (run:save-simulation file simulation))
                        "all robots have left" file)))))
 
+(test saving.a-published-way-is-saved-with-its-interruption
+  (with-hermits ()
+    (with-temporary-file (file)
+      (run:with-simulation (hermit)
+        (let ((hermit (first (run:simulation-robots))))
+          (command:robot-go-forward hermit 5)
+          (run:run-ticks 1)
+          (command:robot-stop hermit)
+          (run:run-ticks 2)
+          (robot:publish-way hermit '((1 2) (3 4)))
+          (run:save-simulation file)))
+      (run:with-loaded-simulation (file)
+        (let ((hermit (first (run:simulation-robots))))
+          (is (equal '((1d0 2d0) (3d0 4d0)) (robot:robot-planned-way hermit)))
+          (setf (robot::robot-published-way hermit) (list nil '(1 2 3)))
+          (check-refused #'run:save-simulation "the planned way" file))))))
+
 (test saving.a-thing-that-is-in-itself-is-refused
   "A state that no command leads to, but that a fault of the simulator might."
   (with-hermits ()

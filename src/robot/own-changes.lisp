@@ -5,15 +5,9 @@
 (export '(robot-remaining-way))
 
 ;;; The simulator sees single commands; only the program knows where they lead. The planned way
-;;; affects nothing: it is not in a run's digest or journal. It belongs to the run; forks copy it.
-
-(defstruct (planned-way (:constructor make-planned-way (points interruption)) (:copier nil))
-  "A way that a program has published: POINTS, a list of lists (x y), and INTERRUPTION, the robot's
-last interruption at that time. After another interruption the way is no longer valid."
-  (points '() :type list :read-only t)
-  (interruption nil :read-only t))
-
-(define-shared-types planned-way)
+;;; affects nothing: it is not in a run's digest or journal. It belongs to the run; forks and saved
+;;; runs have it. It is a list (INTERRUPTION (x y)...): INTERRUPTION is the robot's last
+;;; interruption when the way was published. After another interruption the way is no longer valid.
 
 (defun point-coordinates (point)
   (if (pt-p point)
@@ -32,7 +26,7 @@ move; digests and journals do not change. Return ROBOT. Signals WRONG-ARGUMENT."
                   "a list of PTs, or of lists (x y)")
   (setf (robot-published-way robot)
         (and points
-             (make-planned-way (mapcar #'point-coordinates points) (resource-interruption robot))))
+             (cons (resource-interruption robot) (mapcar #'point-coordinates points))))
   robot)
 
 (addition robot-planned-way)
@@ -41,8 +35,8 @@ move; digests and journals do not change. Return ROBOT. Signals WRONG-ARGUMENT."
 way, or if a command of ROBOT has been interrupted since."
   (let ((way (robot-published-way robot)))
     (and way
-         (eq (planned-way-interruption way) (resource-interruption robot))
-         (planned-way-points way))))
+         (eq (first way) (resource-interruption robot))
+         (rest way))))
 
 ;;; The remaining way.
 

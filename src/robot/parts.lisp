@@ -107,7 +107,7 @@ that its blueprint says" :export))
    (put-y 0d0 double-float "where the robot was last put, the y coordinate in metres" :export)
    (failure nil t
             "a record of the last failed command of the robot or of a part, or NIL" :export)
-   (published-way nil t "the way that PUBLISH-WAY was last given, or NIL" :shared))
+   (published-way '() list "the way that PUBLISH-WAY was last given, see there" :shared))
   (:scratch
    (moved 0d0 double-float "the true length of the last step of driving, in metres" :export)
    (turned-low 0d0 double-float

@@ -113,6 +113,10 @@
                "the last messages of ~A are invalid" robot)
     (check-pending-event radio)))
 
+(defun check-published-way (robot)
+  (must-hold (proper-list-of-p #'number-pair-p (rest (robot-published-way robot)))
+             "the planned way of ~A is invalid" robot))
+
 (defun check-start-pose (robot world)
   (let ((start (robot-start robot)))
     (must-hold (or (null start)
@@ -135,6 +139,7 @@ robot of WORLD in a state that a run can reach."
   (check-start-pose robot world)
   (check-pending-event robot)
   (check-pose robot)
+  (check-published-way robot)
   (loop for (nil reader type) in *part-vectors*
         do (check-parts robot (funcall reader robot) type))
   (loop for camera across (robot-cameras robot)
