@@ -65,7 +65,8 @@
    (:module "src/run" :serial t
     :components ((:file "package") (:file "participant") (:file "run")
                  (:file "plain-data") (:file "references") (:file "robot-list")
-                 (:file "run-variables") (:file "journal") (:file "fingerprint") (:file "past")
+                 (:file "run-variables") (:file "run-variable-lists") (:file "journal")
+                 (:file "fingerprint") (:file "past")
                  (:file "headers") (:file "joining")
                  (:file "tick") (:file "environments") (:file "shared-variables")
                  (:file "forking") (:file "passing") (:file "leaving") (:file "headless")

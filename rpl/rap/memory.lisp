@@ -4,7 +4,9 @@
 
 ;;; A fact is a list of plain data that begins with a symbol, such as (at truck depot). The memory
 ;;; is a run variable, so forks, rewinds and saved runs have their own. An entry is a list (fact
-;;; tick), the newest first. Symbols compare by name and numbers by value, as in patterns of goals.
+;;; tick), the newest first. Entries are never modified, so a new value shares them with the old.
+;;; The journal records what is added and deleted, not the whole memory. Symbols, also variables,
+;;; compare by name and numbers by value, as in patterns of goals.
 
 (define-run-variable main-memory* '()
   "The memory of the current run: a list of lists (fact tick), the newest first. TICK is the tick at
@@ -12,17 +14,18 @@ which the fact was last added.")
 
 (defun now () (simulation-tick))
 
-(defmacro changing-memory (&body body)
-  "Run BODY, which computes a new value of the memory from its old value, while the run stands
-still: no change by another thread comes in between."
-  `(asking ((current-simulation)) ,@body))
+(defun memory-entries ()
+  "Return the entries of the memory of the current run, which the caller must not modify."
+  (stored-run-variable 'main-memory*))
 
 ;;; Patterns.
 
 (defun variable-p (object)
   "True if OBJECT is a variable of a pattern, such as ?x."
-  (or (matchvar-p object)
-      (and (symbolp object) (starts-with-subseq "?" (symbol-name object)))))
+  (if (symbolp object)
+      (let ((name (symbol-name object)))
+        (and (plusp (length name)) (char= #\? (char name 0))))
+      (matchvar-p object)))
 
 (defun anonymous-p (variable)
   "True if VARIABLE is ? or ?(), which matches anything."
@@ -30,11 +33,23 @@ still: no change by another thread comes in between."
       (null (matchvar-name variable))
       (string= "?" (symbol-name variable))))
 
+(defun variable-name (variable)
+  "Return the name of VARIABLE with its question mark, a string."
+  (if (matchvar-p variable)
+      (format nil "?~@[~A~]" (matchvar-name variable))
+      (symbol-name variable)))
+
+(defun binding-of (variable bindings)
+  "Return the element of BINDINGS for VARIABLE, in whatever package that was read, or NIL."
+  (or (assoc variable bindings :test #'eq)
+      (and bindings (assoc (variable-name variable) bindings :key #'variable-name
+                                                             :test #'string=))))
+
 (defun match (pattern object bindings)
   "Match PATTERN with OBJECT under BINDINGS, a list of conses (variable . value). Return the
 extended bindings, or :FAIL."
   (cond ((variable-p pattern)
-         (let ((binding (assoc pattern bindings :test #'eq)))
+         (let ((binding (binding-of pattern bindings)))
            (cond ((anonymous-p pattern) bindings)
                  ((null binding) (acons pattern object bindings))
                  ((value-equal (cdr binding) object) bindings)
@@ -50,7 +65,7 @@ extended bindings, or :FAIL."
 (defun instance (pattern bindings)
   "Return PATTERN with the values of its variables under BINDINGS. Others stay."
   (cond ((variable-p pattern)
-         (let ((binding (assoc pattern bindings :test #'eq)))
+         (let ((binding (binding-of pattern bindings)))
            (if binding (cdr binding) pattern)))
         ((consp pattern) (cons (instance (car pattern) bindings) (instance (cdr pattern) bindings)))
         (t pattern)))
@@ -78,12 +93,15 @@ extended bindings, or :FAIL."
        (not (variable-p (first object)))
        (not (query-operator object))))
 
+(defparameter *memory-limit* 100000 "How many facts a memory can have.")
+
 (defun check-fact (operator fact)
   (unless (and (pattern-valid-p fact) (ground-p fact))
-    (reject-argument operator 'fact fact
+    (reject-argument operator 'fact (abridged fact)
                      (format nil "a list that begins with a symbol other than ~{~(~A~)~^, ~}, and ~
                                   contains no variable ?x"
-                             *query-operators*))))
+                             *query-operators*)))
+  (check-run-variable-value operator 'fact fact))
 
 (defun check-pattern (operator pattern)
   (unless (pattern-valid-p pattern)
@@ -92,58 +110,87 @@ extended bindings, or :FAIL."
 (defun matching-entry-p (pattern)
   (lambda (entry) (not (eq :fail (match pattern (first entry) '())))))
 
+(defun find-entry (fact entries)
+  (find-if (lambda (entry) (value-equal fact (first entry))) entries))
+
+(defun entries-with (fact entries operator)
+  "Return ENTRIES with FACT, which OPERATOR adds in this tick, at the beginning. Signals MISUSE."
+  (let ((old (find-entry fact entries)))
+    (when (and (null old) (nth (1- *memory-limit*) entries))
+      (reject-use "~(~A~): there is no room for the fact ~A. The memory has ~D facts, and can have ~
+                   no more. Delete some by (memory-delete PATTERN)."
+                  operator (data-text fact) *memory-limit*))
+    (cons (list fact (now)) (if old (remove old entries :test #'eq) entries))))
+
+(defun entries-without (pattern entries)
+  "Return ENTRIES without the facts that match PATTERN, and how many these were."
+  (let ((kept (remove-if (matching-entry-p pattern) entries)))
+    (values kept (- (length entries) (length kept)))))
+
+(defun kept-pattern (pattern)
+  "Return PATTERN as a copy of plain data for the journal, with keywords as variables."
+  (cond ((consp pattern) (cons (kept-pattern (car pattern)) (kept-pattern (cdr pattern))))
+        ((variable-p pattern) (intern (variable-name pattern) :keyword))
+        (t (copied-value pattern))))
+
 (defun memory-add (fact)
   "Add FACT, a list such as (at truck depot), to the memory of the current run, or renew its tick if
 it is there. Return FACT. Signals WRONG-ARGUMENT. (From RAP.)"
   (check-fact 'memory-add fact)
-  (changing-memory
-    (setf main-memory*
-          (cons (list fact (now)) (remove-if (matching-entry-p fact) main-memory*))))
+  (let ((kept (copied-value fact)))
+    (update-run-variable 'main-memory*
+                         (lambda (entries) (entries-with kept entries 'memory-add))
+                         'memory-add kept))
   fact)
 
 (defun memory-delete (pattern)
   "Delete all facts that match PATTERN, such as (at ?thing depot), from the memory of the current
 run. Return how many there were. Signals WRONG-ARGUMENT. (From RAP.)"
   (check-pattern 'memory-delete pattern)
-  (changing-memory
-    (let* ((entries main-memory*) (kept (remove-if (matching-entry-p pattern) entries)))
-      (unless (= (length kept) (length entries)) (setf main-memory* kept))
-      (- (length entries) (length kept)))))
+  (if (notany (matching-entry-p pattern) (memory-entries))
+      0
+      (let ((kept (kept-pattern pattern)))
+        (update-run-variable 'main-memory*
+                             (lambda (entries) (entries-without kept entries))
+                             'memory-delete kept))))
 
 (defun memory-set (fact)
   "Add FACT, and delete the facts that differ from it in the last element only: after (memory-set
 '(at truck depot)), the truck is nowhere else. Return FACT. Signals WRONG-ARGUMENT."
   (check-fact 'memory-set fact)
-  (changing-memory
-    (memory-delete (append (butlast fact) (list '?)))
-    (memory-add fact)))
+  (let* ((kept (copied-value fact)) (pattern (append (butlast kept) (list '?))))
+    (check-pattern 'memory-set pattern)
+    (update-run-variable 'main-memory*
+                         (lambda (entries)
+                           (entries-with kept (entries-without pattern entries) 'memory-set))
+                         'memory-set kept))
+  fact)
 
 (defun memory-tick (fact)
   "Return the tick at which FACT was last added to the memory of the current run, or NIL."
   (check-fact 'memory-tick fact)
-  (second (find-if (matching-entry-p fact) main-memory*)))
+  (second (find-entry fact (memory-entries))))
 
 (defun reset-memory ()
   "Delete all facts of the current run. Return nothing. (From RAP.)"
-  (setf main-memory* '())
+  (update-run-variable 'main-memory* (constantly '()) 'reset-memory)
   (values))
+
+(define-operator 'memory-add '(datum) #'memory-add)
+(define-operator 'memory-delete '(datum) #'memory-delete)
+(define-operator 'memory-set '(datum) #'memory-set)
+(define-operator 'reset-memory '() #'reset-memory)
 
 (defun dump-memory (&key assertion (stream *standard-output*))
   "Write the facts of the current run to STREAM, each with its tick, the newest first. With
 ASSERTION, a pattern, write only the facts that match it. Return nothing. (From RAP.)"
   (when assertion (check-pattern 'dump-memory assertion))
   (loop for (fact tick) in (if assertion
-                               (remove-if-not (matching-entry-p assertion) main-memory*)
-                               main-memory*)
+                               (remove-if-not (matching-entry-p assertion) (memory-entries))
+                               (memory-entries))
         do (format stream "~&~8D  ~A~%" tick (data-text fact)))
   (values))
 
 (defun data-text (data)
-  "Return the text of DATA, in lower case, without packages."
-  (labels ((plain (data)
-             (cond ((consp data) (cons (plain (car data)) (plain (cdr data))))
-                   ((and data (symbolp data) (not (keywordp data)))
-                    (make-symbol (string-downcase (symbol-name data))))
-                   (t data))))
-    (let ((*print-pretty* nil))
-      (safe-text (plain data) :escape nil))))
+  "Return the text of DATA as it can be typed, in lower case, without packages."
+  (let ((*print-pretty* nil)) (text-as-typed data)))

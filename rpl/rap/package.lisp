@@ -4,10 +4,12 @@
   (:documentation "Reactive action packages after Firby: tasks that repeat methods until their
 success test holds, a memory of facts with rules, and an agenda of goals with priorities and
 deadlines. Use this package together with ARS and NISP.")
-  (:import-from :ars-magna.basics #:reject-argument #:reject-use #:value-equal #:safe-text
-                #:proper-list-p #:starts-with-subseq #:define-record #:cut)
+  (:import-from :ars-magna.basics #:reject-argument #:reject-use #:value-equal
+                #:text-as-typed #:abridged #:proper-list-p #:define-record #:cut)
   (:import-from :ars-magna.definitions #:reject-clause #:definition-title #:define-registry
-                #:register #:define-user-macro #:call-with-definition)
+                #:register #:define-user-macro #:call-with-definition #:define-operator)
+  (:import-from :ars-magna.run #:stored-run-variable #:update-run-variable
+                #:check-run-variable-value #:copied-value)
   (:import-from :ars-magna.rpl.language #:variable-of #:procedure-form #:check-plan-name
                 #:define-expression #:define-plan-form
                 #:next #:at-once #:value #:child #:how #:result #:environment #:memory

@@ -144,11 +144,18 @@ no-break spaces only if they have no other space. No-break spaces become spaces.
           ((< 1000 bits) (format nil "2^~D" bits))
           (t (double ratio)))))
 
+(defun short-vector-p (datum)
+  "True if DATUM is a simple vector of at most ten numbers, symbols, characters and strings."
+  (and (simple-vector-p datum)
+       (<= (length datum) 10)
+       (every (lambda (element) (typep element '(or number symbol character string))) datum)))
+
 (defun abridged (datum)
   "Return DATUM; if DATUM is long or circular, return its beginning, with dots for the rest."
   (let ((left +shown-cons-limit+))
     (labels ((visit (datum)
-               (cond ((atom datum) (abridged-atom datum))
+               (cond ((short-vector-p datum) (map 'simple-vector #'abridged-atom datum))
+                     ((atom datum) (abridged-atom datum))
                      ((minusp (decf left)) +more+)
                      (t (list-from datum))))
              (list-from (conses)
@@ -168,6 +175,7 @@ no-break spaces only if they have no other space. No-break spaces become spaces.
   (typecase datum
     (cons (cons (without-packages (car datum))
                 (and (cdr datum) (without-packages (cdr datum)))))
+    (simple-vector (map 'simple-vector #'without-packages datum))
     (keyword datum)
     (symbol (make-symbol (symbol-name datum)))
     (t datum)))
@@ -214,7 +222,13 @@ LENGTH characters. Deep, long and circular data are abridged. If printing fails,
   (declare #.*hot*)
   (let ((a (if (symbolp a) (symbol-name a) (string a)))
         (b (if (symbolp b) (symbol-name b) (string b))))
-    (and (= (length a) (length b)) (string-equal a b))))
+    (and (= (length a) (length b))
+         ;; Names such as BOX-1 and BOX-2 differ at their ends.
+         (or (not (typep a '(simple-array character 1)))
+             (not (typep b '(simple-array character 1)))
+             (zerop (length a))
+             (let ((last (1- (length a)))) (char-equal (schar a last) (schar b last))))
+         (string-equal a b))))
 
 (declaim (inline same-name-p))
 (defun same-name-p (a b)
@@ -228,7 +242,9 @@ LENGTH characters. Deep, long and circular data are abridged. If printing fails,
         ((and (numberp a) (numberp b)) (= a b))
         ((and (stringp a) (stringp b)) (string= a b))
         ((and (consp a) (consp b))
-         (and (value-equal (car a) (car b)) (value-equal (cdr a) (cdr b))))))
+         (and (value-equal (car a) (car b)) (value-equal (cdr a) (cdr b))))
+        ((and (simple-vector-p a) (simple-vector-p b))
+         (and (= (length a) (length b)) (every #'value-equal a b)))))
 
 (defun edit-distance (a b)
   "Return how many insertions, deletions, replacements and swaps of neighbours turn A into B."

@@ -2,8 +2,9 @@
 
 (in-package :ars-magna.run)
 
-(export '(initialize-run-variables run-variables-used shown-run-variables all-run-variables
-          find-run-variable run-variable values-expected-text))
+(export '(initialize-run-variables all-run-variables find-run-variable run-variable
+          values-expected-text stored-run-variable update-run-variable check-run-variable-value
+          copied-value))
 
 ;;; A run variable is a symbol macro, not a special variable: any thread reads the value of its
 ;;; current run. The values are a slot of the run's world, so forks, rewinds and saved runs have
@@ -66,8 +67,10 @@
             (function "a symbol can name a function")
             (t (plain-data-limits-text)))))
 
-(defun check-run-variable-value (operator name value world)
-  "Signal WRONG-ARGUMENT, about OPERATOR, unless the run variable NAME can have VALUE in WORLD."
+(defun check-run-variable-value (operator name value
+                                 &optional (world (world-of-current-run name)))
+  "Signal WRONG-ARGUMENT, about the argument NAME of OPERATOR, unless a run variable can have VALUE
+in WORLD."
   (unless (run-variable-value-p value world)
     ;; The run keeps errors of kickers, and would keep a long list in each.
     (reject-argument operator name (abridged value) (values-expected-text value))))
@@ -151,15 +154,19 @@ error in an init form is signalled when the variable is first used, since many r
                   (or (other-thread-run-text)
                       "Use it in (with-simulation (ROBOT) ...), or after (simulator ROBOT)."))))
 
-(defun run-variable (name)
-  "Return the value of the run variable NAME in the current run."
+(defun stored-run-variable (name)
+  "Return the value of the run variable NAME in the current run, which the caller must not modify."
   (let ((world (world-of-current-run name)))
     (definition-of-variable name)
     (let ((entry (or (find-variable-entry name world)
                      (add-variable-entry name (initial-value name world) :read world))))
       ;; Another thread may be setting the variable.
       (unless (third entry) (swap-if-eq (car (cddr entry)) nil :read))
-      (copied-value (second entry)))))
+      (second entry))))
+
+(defun run-variable (name)
+  "Return the value of the run variable NAME in the current run."
+  (copied-value (stored-run-variable name)))
 
 (defun move-variable-entry-to-front (entry world)
   "Move ENTRY to the front of the run variables of WORLD, so that it is found fast."
@@ -187,6 +194,22 @@ error in an init form is signalled when the variable is first used, since many r
     value))
 
 (define-operator 'set-run-variable '(name datum) #'set-run-variable)
+
+;; So a small change of a long list costs and records little: nothing old is checked or copied.
+(defun update-run-variable (name function operator &rest arguments)
+  "Set the run variable NAME in the current run to the first value of FUNCTION, which is called with
+the stored value while no other thread changes the run. FUNCTION must not modify that value. What it
+adds is valid and is never modified. The journal records a call of OPERATOR with ARGUMENTS, which
+does the same. Return the second value of FUNCTION."
+  (let ((world (world-of-current-run name)))
+    (check-not-over world operator)
+    (flet ((update ()
+             (multiple-value-bind (value result) (funcall function (stored-run-variable name))
+               (store-run-variable name value world)
+               result)))
+      (if (changing-thread-p world)
+          (update)
+          (change-world (world-timeline world) world #'update operator arguments)))))
 
 (defun (setf run-variable) (value name)
   (set-run-variable name value))
@@ -254,74 +277,3 @@ MALFORMED-DEFINITION if NAME is another variable."
      (values `((install-run-variable ',name (lambda () ,init) ,documentation))
              `((eval-when (:compile-toplevel :load-toplevel :execute)
                  (define-symbol-macro ,name (run-variable ',name))))))))
-
-;;; Showing, digesting, checking.
-
-(defun entries-by-name (entries)
-  (sort (copy-list entries) #'string< :key (lambda (entry) (qualified-name (first entry)))))
-
-(defun run-variables-used (world &rest uses)
-  "Return the entries of the run variables in WORLD with one of USES, sorted by qualified name."
-  (entries-by-name (remove-if-not (lambda (entry) (member (third entry) uses))
-                                  (world-run-variables world))))
-
-(addition run-variables)
-(defun run-variables (&optional (simulation (current-simulation)))
-  "Return a list (symbol value) for each run variable that SIMULATION has read or set, sorted by
-qualified name. Signals WRONG-ARGUMENT."
-  (let ((world (simulation-world (resolve-simulation simulation 'run-variables))))
-    (loop for (name value) in (run-variables-used world :read :set)
-          collect (list name (copied-value value)))))
-
-;; Digests of runs without run variables are as they were before there were such variables.
-(defmethod digest-state :after ((world world) digest)
-  (loop for (name value) in (run-variables-used world :set)
-        do (digest-add digest (list (qualified-name name) value))))
-
-(defun shown-value (value)
-  "Return VALUE with its things and robots replaced by strings."
-  (typecase value
-    (cons (mapcar #'shown-value value))
-    (simple-vector (cl:map 'simple-vector #'shown-value value))
-    ((or number symbol character string) value)
-    (t (princ-to-string value))))
-
-(defun shown-run-variables (simulation)
-  "Return a list of property lists, :NAME and :VALUE, plain data, for SIMULATION's run variables."
-  (let* ((variables (run-variables simulation)) (names (mapcar #'first variables)))
-    (loop for (name value) in variables
-          collect (list :name (string-downcase (name-label name names))
-                        :value (shown-value value)))))
-
-(define-facts (simulation simulation)
-  "Run variables" (let ((variables (shown-run-variables simulation)))
-                    (and variables
-                         (format nil "~{~A~^; ~}"
-                                 (loop for variable in variables
-                                       collect (destructuring-bind (&key name value) variable
-                                                 (format nil "~A ~A" name (fact-text value))))))))
-
-(define-facts (variable-definition definition)
-  "Value in the current run" (let ((entry (and *simulation*
-                                               (assoc (variable-definition-name definition)
-                                                      (run-variables *simulation*)))))
-                               (and entry (fact-text (second entry)))))
-
-;; Unused variables of the Lisp that saved the run need not be defined here.
-(defun check-run-variables (world)
-  "Signal an error unless the run variables of WORLD, read from a file, are valid and defined."
-  (let ((entries (world-run-variables world)))
-    (must-hold (proper-list-of-p (lambda (entry)
-                                   (and (proper-list-p entry)
-                                        (= 3 (length entry))
-                                        (first entry)
-                                        (symbolp (first entry))
-                                        (run-variable-value-p (second entry) world)
-                                        (member (third entry) '(nil :read :set))))
-                                 entries)
-               "the run variables are invalid")
-    (must-hold (= (length entries) (length (remove-duplicates entries :key #'first)))
-               "a run variable has two values")
-    (loop for (name nil use) in entries when use do (definition-of-variable name))
-    (setf (world-run-variables world)
-          (remove-if-not (lambda (entry) (get (first entry) 'run-variable)) entries))))

@@ -5,7 +5,8 @@
 (export '(world stock do-cell-things world-rank-count thing-of-rank random-thing do-things
           change-world changing give-dice position-of-dice dice-index +dice-purposes+
           permitting-changes first-warning-for-key-p warning-given-p record-progress-checked
-          progress-checked-p warn-once warn-of-angle-in-degrees))
+          progress-checked-p warn-once warn-of-angle-in-degrees
+          changing-thread-p))
 
 ;;; A world is made fresh from its map's recipe. Nothing in it depends on anything but the map
 ;;; and the seed. Serial numbers count from 1 in order of creation, so that things in order of
