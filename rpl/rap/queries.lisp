@@ -74,7 +74,7 @@ NIL, without tables.")
                             collect (value-of-variable variable bindings query))))
 
 (defun value-of-variable (variable bindings query)
-  (cdr (or (assoc variable bindings :test #'eq)
+  (cdr (or (binding-of variable bindings)
            (reject-use "In the query ~A, the variable ~A has no value. Put the pattern that gives ~
                         it one before."
                        (data-text query) (data-text variable)))))
@@ -86,7 +86,7 @@ which it matches what follows by rules. If SINCE is a tick, leave out older fact
   (flet ((try (fact)
            (let ((extended (match pattern fact bindings)))
              (unless (eq :fail extended) (funcall function extended)))))
-    (loop for (fact tick) in main-memory*
+    (loop for (fact tick) in (memory-entries)
           do (when (or (null since) (<= since tick)) (try fact)))
     (dolist (rule (all-memory-rules))
       (let ((call (instance pattern bindings)))
@@ -118,6 +118,7 @@ has worked them out."
         ((null data) nil)
         ((symbolp data) (cons :symbol (string-upcase data)))
         ((realp data) (rational data))
+        ((simple-vector-p data) (cons :vector (map 'list #'data-key data)))
         (t data)))
 
 (defun generalized (pattern)
