@@ -212,8 +212,8 @@
    (:module "worlds/testbeds/pursuit" :serial t
     :components ((:file "package") (:file "pursuit") (:file "modelling")))
    (:module "worlds/testbeds/truckworld" :serial t
-    :components ((:file "package") (:file "country") (:file "actions") (:file "work")
-                 (:file "agents") (:file "raps") (:file "testbed")))))
+    :components ((:file "package") (:file "country") (:file "events") (:file "actions")
+                 (:file "work") (:file "agents") (:file "raps") (:file "testbed")))))
 
 ;;; Loaded by worlds/figures.
 (defsystem "ars-magna/figures"

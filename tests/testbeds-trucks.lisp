@@ -257,6 +257,35 @@ lifted it."
              (is (= 13 (length ars-testbeds.trucks::*roads*)))
              (is (ars-testbeds.trucks::connected-p ars-testbeds.trucks::*roads*)))))
 
+(test trucks.are-told-ways-by-length-and-by-time
+  (in-country ()
+    (loop for place in (ars-testbeds.trucks:neighbours 0)
+          for road = (ars-testbeds.trucks:find-road 0 place)
+          do (is (<= 10 (ars-testbeds.trucks:road-length road) 13))
+             (is (eql place (ars-testbeds.trucks:next-place place)))
+             (is (= (ars-testbeds.trucks:road-length road)
+                    (ars-testbeds.trucks:cost-between
+                     0 place #'ars-testbeds.trucks:road-length))))
+    (is (null (ars-testbeds.trucks:next-place 0)))
+    (let ((step (ars-testbeds.trucks:next-place 11)))
+      (is (= (ars-testbeds.trucks:cost-between 0 11 #'ars-testbeds.trucks:time-cost)
+             (+ (ars-testbeds.trucks:time-cost (ars-testbeds.trucks:find-road 0 step))
+                (ars-testbeds.trucks:cost-between step 11 #'ars-testbeds.trucks:time-cost)))
+          "the way by length is not the quickest for this seed"))))
+
+(test trucks.games-stop-in-the-middle-and-go-on
+  (flet ((score-by-way (stop)
+           (in-country (:seed 7 :quiet nil :parameters '((ars-testbeds.trucks:game-time* 250)))
+             (is (eq (not stop)
+                     (ars-testbeds.trucks:play 'ars-testbeds.trucks::planner
+                                               :until (if stop 100 1000))))
+             (is (= (if stop 100 250) (run:simulation-tick)))
+             (run:run-ticks (- 250 (run:simulation-tick)))
+             (is (some #'plusp (mapcar #'ars-testbeds.trucks:last-scan
+                                       (ars-testbeds.trucks:depots))))
+             (list (trucks-state) (ars-testbeds.trucks:beliefs)))))
+    (is (equal (score-by-way nil) (score-by-way t)))))
+
 (test trucks.claims-hold
   (dolist (row (experiment:check-claims 'truckworld :seeds 8 :claims '(8)))
     (is (getf row :holds) "~S" row)))

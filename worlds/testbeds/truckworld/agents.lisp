@@ -14,10 +14,8 @@
   (let ((ways (ways-from *place* cost)))
     (first (stable-sort (copy-list places) #'< :key (lambda (place) (second (assoc place ways)))))))
 
-(defun last-visit (place) (or (second (assoc place *visits*)) 0))
-
 (defun oldest-depot ()
-  (first (stable-sort (remove *place* *depots*) #'< :key #'last-visit)))
+  (first (stable-sort (remove *place* *depots*) #'< :key #'last-scan)))
 
 (defun live-manifest () (remove-if #'worthless-p *manifest*))
 
@@ -40,7 +38,7 @@
   (let* ((known (loop for belief in *beliefs*
                       when (and (eql depot (second belief)) (in-time-p belief (+ time 30)))
                         collect (fourth belief)))
-         (age (min 150 (- (+ (simulation-tick) time) (last-visit depot))))
+         (age (min 150 (- (+ (simulation-tick) time) (last-scan depot))))
          (new (/ age parcel-interval* (length *depots*)))
          (room (free-room)))
     (* (+ (reduce #'+ known) (* 4 new)) (min 1 (/ room (+ (length known) new 1/10))))))
@@ -105,7 +103,7 @@ are lists (place way...), ways as those of WAYS-FROM."
 readings, so that earlier counts more, and what it has aboard then."
   (with-fork (:seed seed)
     (let ((before *worth*))
-      (drive-to (third (assoc target (ways-from *place* #'time-cost))) (lambda () (planner)))
+      (drive-to (next-place target #'time-cost) (lambda () (planner)))
       (+ (loop repeat 3
                do (run-ticks (ceiling horizon 3))
                sum (- *worth* before))
@@ -127,6 +125,6 @@ readings, so that earlier counts more, and what it has aboard then."
             do (if ready
                    (let ((target (choose-ahead horizon)))
                      (setf ready nil)
-                     (drive-to (third (assoc target (ways-from *place* #'time-cost)))
+                     (drive-to (next-place target #'time-cost)
                                (lambda () (serve #'worth-loading-p #'rest-a-moment))))
                    (run-ticks 1))))))

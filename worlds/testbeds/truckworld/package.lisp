@@ -22,4 +22,5 @@
            #:arm-error* #:scan-ended* #:scan-reports*
            #:here #:depots #:pumps #:neighbours #:find-road #:raining-p #:wetness #:fuel #:cargo
            #:game-over-p #:road-speed #:road-fuel #:slip-chance #:drop-chance #:miss-chance
-           #:work #:choose-by-time #:time-cost))
+           #:work #:choose-by-time #:time-cost
+           #:road-length #:cost-between #:next-place #:beliefs #:last-scan #:found-blocked-p))

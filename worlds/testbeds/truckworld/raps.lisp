@@ -132,7 +132,7 @@
 (defun closed-p (place)
   "True if the road from here to PLACE, a neighbour or NIL, was found blocked."
   (let ((road (and place (here) (find-road (here) place))))
-    (and road (blocked-p road))))
+    (and road (found-blocked-p road))))
 
 (define-rap
   "Drive along a road to PLACE, a neighbour. A truck that was stuck drives on."

@@ -34,8 +34,9 @@
   "The share if each parcel were the only one: no agent has more."
   (/ (reduce #'+ *offers* :key #'best-value) (max 1 (offered))))
 
-(defun play (agent)
-  "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
+(defun play (agent &key (until game-time*))
+  "Play a game with AGENT, the name of a plan or function, up to the tick UNTIL, by default to its
+end. Return true if the game is over. If it is not, run more ticks, fork or rewind as in any run."
   (robot-set-speed truck max-speed*)
   (run-ticks 1)
   (let ((clock (find-thing 'clock)))
@@ -45,8 +46,8 @@
       (run-kicker (set-kicker clock kicker))))
   (run-ticks 1)
   (start-agent agent)
-  (run-ticks (max 0 (- game-time* (simulation-tick))))
-  t)
+  (run-ticks (max 0 (- (min until game-time*) (simulation-tick))))
+  (game-over-p))
 
 (define-testbed truckworld
   "A truck delivers parcels along roads before their deadlines. Rain makes mud, wheels slip, arms

@@ -38,17 +38,23 @@ command was interrupted."
 
 (defun note-unloaded (id) (setf *manifest* (remove id *manifest* :key #'first)))
 
-(defun blocked-p (road)
-  "True if ROAD was found blocked in the last 30 ticks."
+(defun beliefs ()
+  "Return a new list of what WORK believes of parcels that lie somewhere: lists (id place
+destination value deadline weight)."
+  (copy-list *beliefs*))
+
+(defun last-scan (place) "Return the tick at which WORK last scanned PLACE, or 0."
+  (or (second (assoc place *visits*)) 0))
+
+(defun found-blocked-p (road)
+  "True if WORK has found ROAD blocked in the last 30 ticks."
   (loop for (a b tick) in *blocked*
           thereis (and (member a (subseq road 0 2)) (member b (subseq road 0 2))
                        (< (- (simulation-tick) tick) 30))))
 
 ;;; Ways. A cost is a function of a road.
 
-(defun road-length (road) (distance-between (first road) (second road)))
-
-(defun length-cost (road) (+ (road-length road) (if (blocked-p road) 100 0)))
+(defun length-cost (road) (+ (road-length road) (if (found-blocked-p road) 100 0)))
 
 (defun time-cost (road)
   "Return how many ticks ROAD takes in the present weather with the present cargo."
@@ -56,7 +62,7 @@ command was interrupted."
     (* (road-length road)
        (+ (/ (road-speed surface *wetness* (cargo-weight)))
           (* *time-stuck* (slip-chance surface *wetness*))
-          (if (blocked-p road) 10 0)))))
+          (if (found-blocked-p road) 10 0)))))
 
 (defun fuel-cost (road)
   (* (road-length road) (road-fuel (third road) *wetness* (cargo-weight))))
@@ -85,7 +91,14 @@ on the way."
                               changed t))))
     best))
 
-(defun cost-between (place other cost) (second (assoc other (ways-from place cost))))
+(defun cost-between (place other cost)
+  "Return the least COST, a function of a road, to go from PLACE to OTHER."
+  (second (assoc other (ways-from place cost))))
+
+(defun next-place (target &optional (cost #'road-length))
+  "Return the neighbour of this place that comes first on the way of least COST to TARGET; NIL if
+the truck is at TARGET."
+  (third (assoc target (ways-from *place* cost))))
 
 (defun nearest-fuel (place)
   "Return the pump or full drum to which the least fuel is needed from PLACE, and this fuel."
@@ -211,13 +224,17 @@ fuel, the truck stays."
   (drive-to (first (remove place *leg*)) then))
 
 (defun work (choose cost wanted)
-  "Serve the place where the truck is, choose where to go and drive a road towards it, and so on."
+  "Serve the place where the truck is, choose where to go and drive a road towards it, and so on.
+CHOOSE is a function without arguments that returns the number of the place to go to; if the truck
+is there, it waits for 10 ticks. COST is a function of a road, a list (place place surface), that
+returns a number. WANTED is a test of parcels here that fit and are not overdue: lists (id place
+destination value deadline weight)."
   (serve wanted (lambda () (set-out choose cost wanted))))
 
 (defun set-out (choose cost wanted)
   (let* ((target (funcall choose))
-         (step (third (assoc target (ways-from *place* cost)))))
-    (if (or (null step) (blocked-p (find-road *place* step)))
+         (step (next-place target cost)))
+    (if (or (null step) (found-blocked-p (find-road *place* step)))
         (wait 10 (lambda () (set-out choose cost wanted)))
         (drive-to step (lambda () (work choose cost wanted))))))
 
