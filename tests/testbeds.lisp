@@ -217,6 +217,19 @@
     (is (equal '("agent=naive holes*=10 dynamism*=64")
                (conditions '((holes* 10) (dynamism* 64)))))))
 
+(test run-testbed.tables-do-not-call-it-a-success-that-a-game-ended
+  (with-own-definitions
+    (flet ((table (agents)
+             (with-output-to-string (out)
+               (experiment:print-results
+                (experiment:run-testbed 'ars-testbeds:tileworld
+                                        :stream nil :seeds 2 :knobs '((holes* 2)) :agents agents)
+                out))))
+      (is (search "effectiveness" (table '(ars-testbeds::naive))))
+      (is (not (search "success" (table '(ars-testbeds::naive)))))
+      (eval '(defun break-off () (error "broken off")))
+      (is (search "games ended %" (table '(break-off)))))))
+
 ;;; Agents of the command.
 
 (defpackage :ars-test-bold (:use))

@@ -234,15 +234,29 @@ page, else the condition's name."
         columns
         (list (make-text-column "condition" (mapcar #'summary-condition summaries) :widest 40)))))
 
-(defun value-columns (summaries)
+(defun outcome-columns (summaries trials testbed-p)
+  "Return the columns of success and ticks. Success of a game of a testbed means that it has ended:
+if all have, there are no columns."
   (flet ((all (reader) (mapcar reader summaries)))
-    (let ((trials (all #'summary-trials)))
-      (append (unless (= 1 (length (remove-duplicates trials))) (count-column "trials" trials))
-              (estimates-columns (all #'summary-success) trials)
+    (let ((ended-p (and testbed-p
+                        (every (lambda (estimate) (= 1 (estimate-value estimate)))
+                               (all #'summary-success)))))
+      (append (unless ended-p
+                (if testbed-p
+                    (estimates-columns (all #'summary-success) trials "games ended")
+                    (estimates-columns (all #'summary-success) trials)))
               (count-column "limit" (all #'summary-limits))
               (count-column "timeout" (all #'summary-timeouts))
               (count-column "errors" (all #'summary-errors))
-              (estimates-columns (all #'summary-ticks) trials "ticks of successes")
+              (unless ended-p
+                (estimates-columns (all #'summary-ticks) trials
+                                   (if testbed-p "ticks of ended games" "ticks of successes")))))))
+
+(defun value-columns (summaries testbed-p)
+  (flet ((all (reader) (mapcar reader summaries)))
+    (let ((trials (all #'summary-trials)))
+      (append (unless (= 1 (length (remove-duplicates trials))) (count-column "trials" trials))
+              (outcome-columns summaries trials testbed-p)
               (apply #'mapcan (lambda (&rest estimates) (estimates-columns estimates trials))
                      (all #'summary-measures))))))
 
@@ -251,6 +265,10 @@ page, else the condition's name."
     (if (apply #'= counts)
         (format nil "~D trial~:P~:[~; each~]" (first counts) (rest counts))
         (format nil "~D to ~D trials each" (reduce #'min counts) (reduce #'max counts)))))
+
+(defun testbed-results-p (results)
+  "True if RESULTS are those of a testbed that is defined here."
+  (and (find-testbed (sample-experiment (first (results-samples results))) nil) t))
 
 (defun write-heading (results summaries former stream)
   (let* ((name (sample-experiment (first (results-samples results))))
@@ -274,7 +292,7 @@ experiment has none of the conditions of SUMMARIES."
 (defun write-summaries (results summaries stream)
   (terpri stream)
   (write-text-table (key-columns (results-factors results) summaries)
-                    (value-columns summaries) stream))
+                    (value-columns summaries (testbed-results-p results)) stream))
 
 (defun write-tables (results summaries stream)
   (let* ((former (dropped-condition-summaries results summaries))
@@ -290,8 +308,9 @@ experiment has none of the conditions of SUMMARIES."
   "Write RESULTS to STREAM, in lines of at most 100 characters, and return RESULTS. For each
 condition, a table shows how often trials succeeded, reached the limit of ticks or had an error, the
 ticks of successes, and all measures; see SUMMARIZE-RESULTS. Below the table are the reasons of
-failures and the errors, with an example of each, and the kinds of intervals. Conditions that were
-removed from the experiment are in a separate table, if it is known which."
+failures and the errors, with an example of each, and the kinds of intervals. Of a testbed, success
+is not shown, unless some games have not ended. Conditions that were removed from the experiment are
+in a separate table, if it is known which."
   (check-argument print-results results (results-p results)
                   "results, as RUN-EXPERIMENT and READ-RESULTS return them")
   (check-argument print-results stream (and (streamp stream) (output-stream-p stream))
