@@ -175,6 +175,7 @@
 
 (test testbeds.give-agents-lists-that-they-may-sort
   (run:with-simulation ('ars-testbeds:tiler)
+    (setf ars-testbeds.trucks::*fuel* 1)    ; a game has begun
     (check-new-lists (ars-testbeds::*holes* ars-testbeds:open-holes)
                      (ars-testbeds.tiles::*holes* ars-testbeds.tiles:holes)
                      (ars-testbeds.tiles::*tiles* ars-testbeds.tiles:tiles)

@@ -273,6 +273,29 @@ lifted it."
                 (ars-testbeds.trucks:cost-between step 11 #'ars-testbeds.trucks:time-cost)))
           "the way by length is not the quickest for this seed"))))
 
+(test trucks.refuse-what-is-no-place-road-or-surface
+  (in-country ()
+    (dolist (form '((neighbours nil) (neighbours 99) (find-road 0 nil) (cost-between 0 12 time-cost)
+                    (next-place nil) (last-scan nil) (time-cost nil) (road-length (0 1))
+                    (found-blocked-p 4) (road-speed :ice 0 0) (road-fuel :paved nil 0)
+                    (slip-chance :dirt 2) (road-speed :dirt 0 nil) (drop-chance -1)
+                    (miss-chance nil)))
+      (signals base:wrong-argument
+        (apply (find-symbol (string (first form)) :ars-testbeds.trucks) (rest form))))))
+
+(test trucks.say-where-games-begin
+  (run:with-simulation ('ars-testbeds.trucks:truck :seed 1 :clean t)
+    (dolist (form '((fuel) (depots) (pumps) (neighbours 0) (find-road 0 1) (next-place 4)))
+      (is (search "(play 'agent)"
+                  (text-of-error (lambda ()
+                                (apply (find-symbol (string (first form)) :ars-testbeds.trucks)
+                                       (rest form)))))))
+    (is (search "(play 'agent)"
+                (text-of-error (lambda ()
+                              (ars-testbeds.trucks:move-truck ars-testbeds.trucks:truck 4
+                                                              (lambda (&rest ends) ends))
+                              (run:run-ticks 5)))))))
+
 (test trucks.games-stop-in-the-middle-and-go-on
   (flet ((score-by-way (stop)
            (in-country (:seed 7 :quiet nil :parameters '((ars-testbeds.trucks:game-time* 250)))

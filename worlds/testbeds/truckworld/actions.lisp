@@ -124,11 +124,13 @@ or an error code."
       (values code (if code nil (arrive place)) ticks))))
 
 (defun check-truck (part &rest arguments)
-  "Return ARGUMENTS. Signal WRONG-ARGUMENT unless PART is the truck or one of its parts."
+  "Return ARGUMENTS. Signal WRONG-ARGUMENT unless PART is the truck or one of its parts, and MISUSE
+before a game."
   (let ((robot (if (robot-p part) part (part-robot part))))
     (unless (eq truck robot)
       (error 'wrong-argument :operator "an action of Truckworld" :name 'robot :value robot
                              :expected "the robot TRUCK of the world COUNTRY"))
+    (check-begun)
     arguments))
 
 (define-argument-type 'place-number (lambda (value) (typep value '(integer 0 11)))

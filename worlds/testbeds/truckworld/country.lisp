@@ -71,28 +71,57 @@
 (define-run-variable *place* 0 "The place where the truck is; NIL on a road.")
 (define-run-variable *leg* '() "The places at both ends of the road that the truck is on.")
 
-(defun depots () "Return a new list of the places where parcels appear." (copy-list *depots*))
-(defun pumps () "Return a new list of the places with a pump." (copy-list *pumps*))
+(defun check-begun ()
+  "Signal MISUSE unless a game has begun."
+  (unless *fuel*
+    (reject-use "The game has not begun: there are no roads yet. Begin it by (play 'agent) instead ~
+                 of starting the agent.")))
+
+(defun depots () "Return a new list of the places where parcels appear."
+  (check-begun)
+  (copy-list *depots*))
+(defun pumps () "Return a new list of the places with a pump."
+  (check-begun)
+  (copy-list *pumps*))
 (defun raining-p () "True if it rains." *raining*)
 (defun wetness () "Return how wet all surfaces are, from 0 to 1." *wetness*)
 (defun here () "Return the place where the truck is; NIL on a road." *place*)
-(defun fuel () "Return how much fuel is in the tank." *fuel*)
+(defun fuel () "Return how much fuel is in the tank."
+  (check-begun)
+  *fuel*)
 (defun game-over-p () "True if the game has ended." (<= game-time* (simulation-tick)))
+
+(defparameter *place-text* "the number of a place, from 0 to 11; (here) is NIL on a road")
+
+(defun place-number-p (thing) (typep thing '(integer 0 11)))
+
+(defun road-list-p (thing)
+  (typep thing '(cons (integer 0 11) (cons (integer 0 11) (cons (member :paved :gravel :dirt))))))
+
+(defun check-road (road)
+  (check-argument truckworld road (road-list-p road)
+                  "a list (place place surface), as FIND-ROAD returns it"))
 
 (defun find-road (place other)
   "Return the road between two places, a list (place place surface), or NIL."
+  (check-argument find-road place (place-number-p place) *place-text*)
+  (check-argument find-road other (place-number-p other) *place-text*)
+  (check-begun)
   (find-if (lambda (road) (and (member place (subseq road 0 2)) (member other (subseq road 0 2))
                                (/= place other)))
            *roads*))
 
 (defun neighbours (place)
   "Return a list of the places that a road joins to PLACE."
+  (check-argument neighbours place (place-number-p place) *place-text*)
+  (check-begun)
   (loop for (a b) in *roads*
         when (= a place) collect b
         when (= b place) collect a))
 
 (defun road-length (road)
   "Return how many cells ROAD is long, a list (place place surface)."
+  (check-road road)
   (distance-between (first road) (second road)))
 
 ;;; Surfaces. A wet surface is as much slower as it is soft: dirt becomes mud.
@@ -102,6 +131,8 @@
 
 (defun mud (surface wetness)
   "Return how deep wheels sink into SURFACE, from 0 to 1."
+  (check-argument truckworld surface (assoc surface *surfaces*) ":paved, :gravel or :dirt")
+  (check-argument truckworld wetness (typep wetness '(real 0 1)) "a number from 0 to 1")
   (* wetness (third (assoc surface *surfaces*))))
 
 (defun ease (surface wetness)
@@ -122,12 +153,17 @@
 
 (defun cargo-weight () (loop for parcel in (cargo) sum (get-attribute parcel :weight)))
 
+(defun check-weight (weight)
+  (check-argument truckworld weight (typep weight '(real 0)) "a number that is not negative"))
+
 (defun road-speed (surface wetness weight)
   "Return the cells that the truck goes in a tick on SURFACE with cargo of WEIGHT, without noise."
+  (check-weight weight)
   (* max-speed* (/ (ease surface wetness) (+ 1 (/ weight 100d0)))))
 
 (defun road-fuel (surface wetness weight)
   "Return the fuel that the truck burns for a cell of SURFACE with cargo of WEIGHT."
+  (check-weight weight)
   (/ (* (+ 1 (/ weight 50d0)) (+ 1 (mud surface wetness)))
      (second (assoc surface *surfaces*))))
 
@@ -138,8 +174,10 @@
 (defun drop-chance (weight)
   "Return the probability that an arm drops a parcel of WEIGHT: it grows with the square of
 the share of the arm's strength."
+  (check-weight weight)
   (min 1 (* clumsiness* (expt (/ weight arm-strength*) 2))))
 
 (defun miss-chance (distance)
   "Return the probability that a scan misses what is at DISTANCE, in cells; it is doubled in rain."
+  (check-argument miss-chance distance (typep distance '(real 0)) "a number that is not negative")
   (min 1 (* scan-noise* distance (if *raining* 2 1))))

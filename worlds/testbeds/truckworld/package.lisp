@@ -7,7 +7,7 @@
                 #:operation-resource #:operation-arguments #:operation-subject)
   (:import-from :ars-magna.robot #:drive-tick #:set-robot-angle)
   (:import-from :ars-magna.rpl-robot #:define-fluents #:define-outcome)
-  (:import-from :ars-magna.base #:define-argument-type)
+  (:import-from :ars-magna.base #:define-argument-type #:check-argument #:reject-use)
   (:import-from :ars-rap #:define-rap #:define-memory-rule #:rap-failed #:memory-add
                 #:memory-delete #:memory-set #:memory-query #:install-goal #:remove-goal
                 #:agenda-goals #:work-on-agenda)

@@ -44,10 +44,12 @@ destination value deadline weight)."
   (copy-list *beliefs*))
 
 (defun last-scan (place) "Return the tick at which WORK last scanned PLACE, or 0."
+  (check-argument last-scan place (place-number-p place) *place-text*)
   (or (second (assoc place *visits*)) 0))
 
 (defun found-blocked-p (road)
   "True if WORK has found ROAD blocked in the last 30 ticks."
+  (check-road road)
   (loop for (a b tick) in *blocked*
           thereis (and (member a (subseq road 0 2)) (member b (subseq road 0 2))
                        (< (- (simulation-tick) tick) 30))))
@@ -58,6 +60,7 @@ destination value deadline weight)."
 
 (defun time-cost (road)
   "Return how many ticks ROAD takes in the present weather with the present cargo."
+  (check-road road)
   (let ((surface (third road)))
     (* (road-length road)
        (+ (/ (road-speed surface *wetness* (cargo-weight)))
@@ -93,11 +96,19 @@ on the way."
 
 (defun cost-between (place other cost)
   "Return the least COST, a function of a road, to go from PLACE to OTHER."
+  (check-argument cost-between place (place-number-p place) *place-text*)
+  (check-argument cost-between other (place-number-p other) *place-text*)
+  (check-begun)
   (second (assoc other (ways-from place cost))))
 
 (defun next-place (target &optional (cost #'road-length))
   "Return the neighbour of this place that comes first on the way of least COST to TARGET; NIL if
 the truck is at TARGET."
+  (check-argument next-place target (place-number-p target) *place-text*)
+  (check-begun)
+  (unless *place*
+    (reject-use "The truck is on a road, and has no way to go. MOVE-TRUCK takes it to one of both ~
+                 ends, ~{~A or ~A~}." *leg*))
   (third (assoc target (ways-from *place* cost))))
 
 (defun nearest-fuel (place)
