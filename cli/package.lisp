@@ -65,7 +65,8 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:missing-shards #:check-same-code
                 #:testbed #:find-testbed #:all-testbeds #:testbed-name #:testbed-agents
                 #:testbed-knobs #:testbed-score #:run-testbed #:save-testbed-pages
-                #:write-testbed-list #:agent-p #:write-agents-order #:count-broken-trials
+                #:write-testbed-list #:agent-p #:agent-arguments-text #:testbed-measures
+                #:write-agents-order #:count-broken-trials
                 #:first-broken-trial #:testbed-robots #:parameter-of-variable
                 #:settings-text #:testbed-p #:testbed-experiment #:testbed-documentation
                 #:experiment-measures)

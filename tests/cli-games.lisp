@@ -103,6 +103,35 @@
                           "Back from the fork. Tick 200, paused." "200"
                           "over at tick 1301: success. effectiveness 0.4"))))
 
+;;; Errors, plots and measures.
+
+(defun in-small-game (&rest lines)
+  "Type LINES in a batch in which games of Truckworld are short."
+  (apply #'game-text "trial truckworld idle,tuning,game-time=60 1" "step 9" lines))
+
+(test game.tells-errors-with-the-line-that-runs-then
+  (let ((text (joined (run-script
+                       (joined '("(defun stumble ()"
+                                 " (ars-testbeds:spend-steps 1 (lambda () (error \"fell\"))))"
+                                 "trial tileworld cautious,holes=3 1"
+                                 "trial tileworld stumble,holes=3 1"
+                                 "step 100"))))))
+    (is (search "SCRIPT, line 5: Error in" text) "~A" text)))
+
+(test game.plots-the-variables-that-status-shows
+  (dolist (name '("*worth*" "ars-testbeds.trucks::*worth*"))
+    (let ((text (in-small-game (format nil "plot ~A" name) "step 1" "plot")))
+      (is (search "Plotting *worth*" text) "~A" text)
+      (is (search "0 at tick 10" text) "~A" text)
+      (is (not (search "no run variable" text))))))
+
+(test game.measures-of-testbeds-are-shown-to-their-robots-only
+  (let ((names (mapcar (lambda (line) (subseq line 0 (position #\Space line)))
+                       (type-batch "measure"))))
+    (dolist (name '("bound" "worth-delivered" "effectiveness" "captured"))
+      (is (not (find name names :test #'string=)) "~A" name)))
+  (is (search "worth-delivered" (in-small-game "measure"))))
+
 ;;; The page of the testbeds.
 
 (defun lines-for-watching ()

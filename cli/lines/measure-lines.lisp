@@ -16,14 +16,21 @@
                for measure = (find-measure name nil)
                when measure collect measure))))
 
+(defun measures-here ()
+  "Return all measures, except those of testbeds in which the robot of the prompt does not play."
+  (let ((others (loop for testbed in (all-testbeds)
+                      unless (member *prompt-robot* (testbed-robots testbed))
+                        append (testbed-measures testbed))))
+    (remove-if (lambda (measure) (member measure others)) (all-measures))))
+
 (defun measures-typed (name session)
-  "Return the measures that NAME means in SESSION: one, or all if NAME is NIL. Those of a trial come
-first; several testbeds may have measures of the same name. Signals BAD-LINE."
+  "Return the measures that NAME means in SESSION: one, or those to show if NAME is NIL. Those of a
+trial come first; several testbeds may have measures of the same name. Signals BAD-LINE."
   (let ((own (measures-of-trial session)))
     (if name
         (list (or (find name own :key #'measure-name :test #'string-equal)
                   (find-measure-typed name)))
-        (or own (all-measures)))))
+        (or own (measures-here)))))
 
 (defun read-measure (measure)
   "Return the value of MEASURE, and NIL; or NIL and the text of the error that its forms signalled."
@@ -47,7 +54,8 @@ first; several testbeds may have measures of the same name. Signals BAD-LINE."
      "(defmeasure NAME form) defines a measure. PLOT NAME plots it over time, and PICTURE file NAME
 writes its value above the picture.")
     "Show the values that measures have now. In Lisp: (measure-value NAME). Without NAME, show those
-of the trial that you are in, or else all."
+of the trial that you are in, or else all, except those of testbeds in which the robot does not
+play."
   (let ((measures (measures-typed name session)))
     (current-simulation)
     (with-time-stopped

@@ -155,7 +155,10 @@ at the next tick. A second Control-C before that tick leaves the trial."
          (directory (open-trial-directory trial))
          (parts (and directory (prepare-condition experiment condition)))
          (row (and directory (row-of-trial experiment condition number directory)))
-         (*trace-plans* t))
+         (*trace-plans* t)
+         ;; An asker of no line: what goes wrong later is told with the line that runs then.
+         (*asker* (copy-seq +prompt-asker+))
+         (*request-origin* *asker*))
     (rerun-trial experiment condition number
                  :journal t
                  :gate (make-trial-gate session trial)

@@ -116,6 +116,15 @@ If the fluent is only pulsed, the quantity is the number of pulses."
   (let ((name (measure-name measure)))
     (run-quantity name (documentation name 'measure) (lambda () (measure-value measure)))))
 
+(defun run-variable-typed (symbol)
+  "Return the name of the run variable that SYMBOL means, which may be of another package: one that
+the current run has, if there are several."
+  (let ((name (variable-definition-name (find-run-variable symbol))))
+    (or (and (not (eq name symbol))
+             *simulation*
+             (find symbol (mapcar #'first (run-variables *simulation*)) :test #'string=))
+        name)))
+
 (defun run-variable-quantity (name)
   (run-quantity name (documentation name 'variable) (lambda () (run-variable name))))
 
@@ -166,7 +175,7 @@ If the fluent is only pulsed, the quantity is the number of pulses."
         ((or (null datum) (not (symbolp datum))) (reject-plot text))
         ((fluent-variable-p datum) (find-fluent-quantity datum index))
         ((find-measure datum nil) (measure-quantity (find-measure datum)))
-        ((find-run-variable datum nil) (run-variable-quantity datum))
+        ((find-run-variable datum nil) (run-variable-quantity (run-variable-typed datum)))
         ((and (fboundp datum) (not (macro-function datum)) (not (special-operator-p datum)))
          (function-quantity (string-downcase datum) datum))
         (t (reject-plot text))))

@@ -22,6 +22,7 @@ resumed, on all processors and on many machines. Names lparallel.")
                 #:blueprint-map)
   (:import-from :ars-magna.rpl.tasks
                 #:find-procedure #:procedure #:procedure-p #:procedure-name #:procedure-source
+                #:procedure-lambda-list
                 #:task-p #:task-over-p #:task-state #:task-result #:task-label
                 #:plan-failure #:failure-class #:failure-text
                 #:lisp-failure #:lisp-failure-condition)

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(testbed-experiment testbed-robots agent-p))
+(export '(testbed-experiment testbed-robots testbed-measures agent-p
+          agent-arguments-text))
 
 ;;; The manual measures itself against the testbeds of its time (1.2, 1.3). A testbed is an
 ;;; experiment whose factor AGENT has the agents as values. So its trials, tables, comparisons and
@@ -252,6 +253,17 @@ run. Return NAME. Signals MALFORMED-DEFINITION."
   (and (symbolp name) name
        (or (find-procedure name nil) (and (fboundp name) (not (macro-function name))))))
 
+(defun agent-arguments-text (name)
+  "Return a text that says which arguments the agent NAME takes, and what to do; NIL if it can be
+called without any."
+  (let ((procedure (find-procedure name nil)))
+    (multiple-value-bind (list unknown-p)
+        (if procedure (procedure-lambda-list procedure) (lambda-list-of name))
+      (unless (or unknown-p (accepts-count-p list 0))
+        (format nil "~(~A~) takes arguments, ~(~A~), but agents are called without any. Define an ~
+                     agent that calls it, such as (~A my-agent () (~(~A~) ...))."
+                name list (if procedure "def-interp-proc" "defun") name)))))
+
 (defun reseeded-clauses (clauses seed)
   (substitute-if (list :seed seed) (lambda (clause) (eq :seed (first clause))) clauses))
 
@@ -271,6 +283,12 @@ run. Return NAME. Signals MALFORMED-DEFINITION."
 (defun testbed-robots (testbed)
   "Return the names of the robots in games of TESTBED."
   (mapcar #'kind-in-entry (getf (experiment-options testbed) :robots)))
+
+(defun testbed-measures (testbed)
+  "Return the measures of TESTBED that are defined."
+  (loop for (name) in (getf (experiment-options testbed) :measures)
+        for measure = (find-measure name nil)
+        when measure collect measure))
 
 (defun factor-parts (settings)
   (loop for (name . values) in settings collect (list* (list name) values)))
