@@ -261,3 +261,64 @@
 (test list.shows-worlds-of-testbeds-apart
   (let ((text (with-output-to-string (*standard-output*) (cli::write-worlds))))
     (is (< (search "tiny " text) (search "Worlds of testbeds" text) (search "tileworld " text)))))
+
+;;; Agents that cannot play.
+
+(defun race-complaint (&rest arguments)
+  "Return what USAGE-ERROR says of the command `testbed race` with ARGUMENTS."
+  (line-said-by (lambda () (apply #'testbed-said "race" "--seeds" "1" "--quiet" arguments))))
+
+(test testbed-command.tells-agents-with-arguments-from-unknown-ones
+  (with-race ((:score ars-test-race:metres))
+    (let ((*package* (find-package :ars-test-race)))
+      (eval '(defun ars-test-race::run-to (place) place))
+      (eval '(rpl:def-interp-proc ars-test-race::saunter (place) place)))
+    (loop for (name definer) in '(("run-to" "(defun my-agent () (run-to ...))")
+                                  ("saunter" "(def-interp-proc my-agent () (saunter ...))"))
+          for text = (race-complaint "--agent" name)
+          do (is (search "takes arguments, (place), but agents are called without any" text)
+                 "~A" text)
+             (is (search definer text)))
+    (is (search "no plan or function has that name" (race-complaint "--agent" "run-off")))
+    (is (search "takes arguments"
+                (line-said-by (lambda ()
+                                (experiment:run-testbed 'ars-test-race:race :seeds 1 :stream nil
+                                                        :agents '(ars-test-race::saunter))))))))
+
+(test testbed-command.finds-agents-of-names-with-small-letters
+  (with-race ((:score ars-test-race:metres))
+    (setf (fdefinition (intern "my agent" :ars-test-race)) (lambda () nil))
+    (with-directories (directory)
+      (is (eql 0 (nth-value 1 (testbed-said "race" "--agent" "|my agent|" "--seeds" "1" "--quiet"
+                                            "--out" (namestring directory))))))))
+
+(test testbed-command.asks-which-agent-of-a-loaded-file-is-to-play
+  (with-race ((:score ars-test-race:metres))
+    (with-directories (directory)
+      (let ((file (uiop:native-namestring
+                   (ensure-directories-exist (merge-pathnames "mine.lisp" directory)))))
+        (with-open-file (out file :direction :output :if-exists :supersede)
+          (write-string "(cl:defun cl-user::mine () nil)" out))
+        (is (search "--load needs --agent" (race-complaint "--load" file)))
+        (is (eql 0 (nth-value 1 (testbed-said "race" "--load" file "--agent" "cl-user::mine"
+                                              "--seeds" "1" "--quiet" "--out"
+                                              (namestring directory)))))))))
+
+(test run-testbed.says-which-of-its-arguments-is-wrong
+  (with-race ((:score ars-test-race:metres))
+    (loop for (arguments words)
+            in '(((:seeds 0) "run-testbed: seeds is 0")
+                 ((:agents slow) "run-testbed: agents is SLOW; give a list")
+                 ((:agents (ars-test-race:slow ars-test-race:slow)) "different names")
+                 ((:knobs 3) "run-testbed: knobs is 3"))
+          for text = (line-said-by (lambda ()
+                                     (apply #'experiment:run-testbed 'ars-test-race:race
+                                            :stream nil arguments)))
+          do (is (search words text) "~A" text))))
+
+(test run-testbed.does-not-redefine-anything
+  (with-race ((:score ars-test-race:metres))
+    (flet ((play () (experiment:run-testbed 'ars-test-race:race :seeds 1 :stream nil)))
+      (handler-bind ((warning (lambda (warning) (fail "~A" warning))))
+        (let ((*load-truename* #p"/nowhere/mine.lisp")) (play))
+        (is (experiment:results-p (play)))))))

@@ -51,9 +51,9 @@
 (defun playable-p (symbol)
   "True if SYMBOL names a plan, or a function of a program that can be called without arguments."
   (and (agent-p symbol)
+       (null (agent-arguments-text symbol))
        (or (find-procedure symbol nil)
-           (and (not (starts-with-subseq "SB-" (package-name (symbol-package symbol))))
-                (callable-with-count-p symbol 0)))))
+           (not (starts-with-subseq "SB-" (package-name (symbol-package symbol)))))))
 
 (defun agents-named (text names)
   "Return the agents of the name or full name TEXT: those among NAMES, and plans and functions that
@@ -69,7 +69,20 @@ are no agents of other testbeds."
                           (or (null end)
                               (eq (symbol-package symbol)
                                   (find-package (string-upcase (subseq text 0 end)))))))
-                   (find-all-symbols (string-upcase name)))))
+                   (symbols-named name))))
+
+(defun symbols-named (name)
+  "Return all symbols of the name NAME, which is in capitals unless it is written between bars."
+  (let ((last (1- (length name))))
+    (find-all-symbols (if (and (< 1 last) (char= #\| (char name 0) (char name last)))
+                          (subseq name 1 last)
+                          (string-upcase name)))))
+
+(defun agent-with-arguments-text (text)
+  "Return what is wrong with the plan or function TEXT of the user if it takes arguments, or NIL."
+  (let ((symbol (find-if (lambda (symbol) (and (users-symbol-p symbol) (agent-p symbol)))
+                         (symbols-named text))))
+    (and symbol (agent-arguments-text symbol))))
 
 (defun agent-named (text testbed)
   "Return the agent TEXT: one of TESTBED, or the name of a plan or function of the user."
@@ -79,6 +92,7 @@ are no agents of other testbeds."
            (reject-line "There are several agents ~A: ~{~A~^, ~}. Rename yours, or use a full name."
                         text (sort (mapcar #'full-name agents) #'string<)))
           (agents (first agents))
+          ((agent-with-arguments-text text) (reject-line "~A" (agent-with-arguments-text text)))
           (t (reject-line "~A has no agent ~A, and no plan or function has that name.~@[ Did you ~
                            mean ~A?~] Known: ~{~A~^, ~}. --load FILE loads an agent of your own."
                           (string-downcase (testbed-name testbed)) text (nearest-name text names)
@@ -226,11 +240,25 @@ of these is named."
         (finish-output)))
     0))
 
+(defun check-loaded-agent-named (options words known)
+  "Signal USAGE-ERROR if files were loaded for a testbed that was KNOWN before, and no agent is
+named, so that none of the files would play."
+  (when (and words
+             (option-values :load options)
+             (set-difference (mapcar #'first options) '(:load :other :all :agent))
+             (not (find :all options :key #'first))
+             (not (find :agent options :key #'first))
+             (find (first words) known :key #'testbed-name :test #'string-equal))
+    (reject-usage "--load needs --agent AGENT: which plan or function of ~A is to play?"
+                  (first (option-values :load options)))))
+
 (defun testbed-command (arguments)
   (let* ((options (parse-options arguments :table *testbed-options* :others t))
          (words (option-values :other options)))
     (check-testbed-options options words)
-    (load-files-before-prompt (option-values :load options))
+    (let ((known (all-testbeds)))
+      (load-files-before-prompt (option-values :load options))
+      (check-loaded-agent-named options words known))
     (call-reporting-interruption
      (lambda ()
        (handler-bind ((bad-line (lambda (line) (reject-usage "~A" (bad-line-text line)))))

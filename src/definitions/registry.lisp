@@ -208,15 +208,18 @@ variable, if any, to VALUE. Return true, or change nothing if another thread has
       (when (entry-variable new) (setf (global-value (entry-variable new)) value))
       t)))
 
-(defun register (registry name object &key variable (value object) before)
+(defun register (registry name object &key variable (value object) before generated)
   "Define NAME as OBJECT in REGISTRY, replacing an earlier definition. If VARIABLE is true, and NAME
 can be a special variable and is unused, set NAME to VALUE. A new entry is added at the end, or
 before the entry of the object BEFORE. Return OBJECT and the object that it replaces, or NIL. If
-several threads define NAME at a time, each replaces a different object."
+several threads define NAME at a time, each replaces a different object. GENERATED is true if a
+program defines NAME, not a file: it has no source."
   (loop
     (let* ((old (entry-to-replace name registry))
            (variable (and variable (choose-variable name old registry)))
-           (source (if *loading-simulator-p* *simulator-source* (current-source)))
+           (source (cond (generated nil)
+                         (*loading-simulator-p* *simulator-source*)
+                         (t (current-source))))
            (new (make-entry name object source variable)))
       (when (replace-entry old new registry before value)
         (when old (warn-if-replaced old new registry))

@@ -30,7 +30,9 @@ another value then: tables would say what the game was not."
 (defun resolve-agent (testbed name)
   "Return the agent NAME: a plan or function of that very name, or else an agent of TESTBED."
   (let ((names (mapcar #'first (testbed-agents testbed))))
-    (cond ((agent-p name) name)
+    (cond ((agent-p name)
+           (when (agent-arguments-text name) (reject-use "~A" (agent-arguments-text name)))
+           name)
           ((and name (symbolp name) (find name names :test #'same-name-p)))
           (t (reject-name "agent" name names)))))
 
@@ -50,6 +52,15 @@ another value then: tables would say what the game was not."
                (reject-use "The knob ~(~A~) is set twice. Set it once." knob)))
     resolved))
 
+(defun check-testbed-arguments (agents knobs seeds)
+  (check-argument run-testbed agents (proper-list-p agents) "a list of names, such as (my-agent)")
+  (check-argument run-testbed agents
+                  (= (length agents) (length (remove-duplicates agents :test #'string=)))
+                  "agents with different names, by which tables know them")
+  (check-argument run-testbed knobs (proper-list-p knobs) "a list of lists (knob value)")
+  (check-argument run-testbed seeds (and (integerp seeds) (plusp seeds))
+                  "a positive integer, the number of seeds"))
+
 (addition run-testbed)
 (defun run-testbed (name &key agents knobs (seeds 100) tuning (workers 1) directory time-limit
                               (stream *error-output*))
@@ -60,8 +71,7 @@ value). If TUNING is true, the seeds are those to write agents with, else those 
 WORKERS, DIRECTORY, TIME-LIMIT and STREAM are as for RUN-EXPERIMENT. Signals UNKNOWN-NAME,
 WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
   (let ((testbed (find-testbed name)))
-    (unless (and (proper-list-p agents) (proper-list-p knobs))
-      (reject-argument 'run-testbed 'agents (list agents knobs) "lists of agents and of knobs"))
+    (check-testbed-arguments agents knobs seeds)
     (run-experiment-object
      (testbed-experiment testbed
                          (loop for agent in (or agents (mapcar #'first (testbed-agents testbed)))
@@ -72,7 +82,7 @@ WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
 
 (defun run-experiment-object (experiment seeds workers directory stream &optional time-limit)
   "Register EXPERIMENT, so that failed trials can be listed, and run it. Return the results."
-  (register *experiments* (experiment-name experiment) experiment)
+  (register *experiments* (experiment-name experiment) experiment :generated t)
   ;; Not by its name: other threads may run the same testbed.
   (apply #'run-experiment experiment
          :trials seeds :workers workers :directory directory :stream stream
