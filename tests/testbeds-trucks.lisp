@@ -251,6 +251,14 @@ lifted it."
         (is (every #'<= (experiment:sample-measure results sample "worth-delivered")
                    (experiment:sample-measure results sample "bound")))))))
 
+(test trucks.play-games-that-are-over-before-they-begin
+  (loop for ticks from 1 to 4
+        for results = (experiment:run-testbed 'truckworld :agents '(rap-driver planner) :seeds 1
+                                                          :knobs `((game-time* ,ticks))
+                                                          :tuning t :stream nil)
+        do (dolist (sample (experiment:results-samples results))
+             (is (string= "" (aref (experiment:sample-errors sample) 0))))))
+
 (test trucks.roads-connect-all-places
   (loop for seed from 1 to 5
         do (in-country (:seed seed)

@@ -150,7 +150,7 @@ on a road."
 
 (defun nearer-end ()
   "Return the end of the road, where the truck is, that is nearer."
-  (first (sort *leg* #'< :key (lambda (place) (abs (left-to truck place))))))
+  (first (sort (copy-list *leg*) #'< :key (lambda (place) (abs (left-to truck place))))))
 
 (define-rap
   "Travel to PLACE, by way of fuel if there may be too little, unless it has been outbid. Serve the

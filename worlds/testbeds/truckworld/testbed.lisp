@@ -45,7 +45,8 @@ end. Return true if the game is over. If it is not, run more ticks, fork or rewi
     (dolist (kicker '(change-weather wet next-parcel block-road ignite))
       (run-kicker (set-kicker clock kicker))))
   (run-ticks 1)
-  (start-agent agent)
+  ;; A plan that begins when no tick is left would act after the run.
+  (unless (game-over-p) (start-agent agent))
   (run-ticks (max 0 (- (min until game-time*) (simulation-tick))))
   (game-over-p))
 
