@@ -66,6 +66,7 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:testbed #:find-testbed #:all-testbeds #:testbed-name #:testbed-agents
                 #:testbed-knobs #:testbed-score #:run-testbed #:save-testbed-pages
                 #:write-testbed-list #:agent-p #:agent-arguments-text #:testbed-measures
+                #:testbed-seeds
                 #:write-agents-order #:count-broken-trials
                 #:first-broken-trial #:testbed-robots #:parameter-of-variable
                 #:settings-text #:testbed-p #:testbed-experiment #:testbed-documentation

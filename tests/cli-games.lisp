@@ -35,7 +35,9 @@
                                 ("trial tileworld cautious,bold-any 1" "several agents")
                                 ("trial tileworld cautious,hole=3 1" "no knob hole")
                                 ("trial tileworld cautious,holes=0 1" "from 1 to 100000")
-                                ("trial tileworld cautious 0" "1 to 1e9, not 0" "first seed, 1.")
+                                ("trial tileworld cautious 0" "1 to 1000000, not 0" "seed, 1.")
+                                ("trial tileworld cautious,tuning 1000001"
+                                 "not 1000001" "not its seed" "seed, 1000001.")
                                 ("trial tileworld cautious,tuning 0" "first seed, 1000001.")
                                 ("trial tileworl" "could be" "TILEWORLD-WIND")
                                 ("failures pursuit" "was not run here"))

@@ -98,12 +98,22 @@ is a number, counted from 1, or a part of a name. If QUESTION is a testbed, see 
       (values question
               (find-condition question (or (ignore-errors (parse-integer text)) text)))))
 
+(defun count-of-trials (experiment)
+  "Return how many trials EXPERIMENT can have: of a testbed, none with a seed of its other seeds."
+  (let ((testbed (find-testbed (experiment-name experiment) nil)))
+    (if testbed
+        (let ((seeds (testbed-seeds testbed)))
+          (abs (- (getf seeds :tuning 0) (getf seeds :testing 0))))
+        1000000000)))
+
 (defun check-trial-number (experiment number)
   "Signal BAD-LINE unless EXPERIMENT can have a trial of the NUMBER."
-  (unless (<= 1 number 1000000000)
-    (reject-line "Trials of ~(~A~) have the numbers 1 to 1e9, not ~D. Trial 1 has the first seed, ~
-                  ~D."
-                 (experiment-name experiment) number (trial-seed experiment 1))))
+  (let ((count (count-of-trials experiment)))
+    (unless (<= 1 number count)
+      (reject-line "Trials of ~(~A~) have the numbers 1 to ~:[~D~;1e9~*~], not ~D. Give the number ~
+                    of a trial, not its seed: trial 1 has the first seed, ~D."
+                   (experiment-name experiment) (= count 1000000000) count number
+                   (trial-seed experiment 1)))))
 
 ;;; What is there.
 
