@@ -1,4 +1,4 @@
-;;;; rap-definitions.lisp -- variables without values, and steps that could never begin.
+;;;; rap-definitions.lisp -- clauses without use, variables without values, orders of steps.
 
 (in-package :ars-magna.tests.rap)
 
@@ -21,6 +21,22 @@
                    "~S ~S: ~A" context use mistake))))
   (is (search "the result ?y" (rap-mistake '(define-rap (index (foo => ?y)) (succeed (not (at ?y)))
                                              (method (primitive 1)))))))
+
+(test rap-definitions.clauses-without-use-are-refused
+  (loop for (clauses . text)
+          in '((((index (bar))) . "only one clause index")
+               (((attempts 1) (attempts 3)) . "only one clause attempts")
+               (((succeed)) . "something after succeed")
+               (((resources)) . "something after resources")
+               (((resources "body")) . "names, or variables")
+               (((attempts)) . "something after attempts")
+               (((method (context) (primitive 1))) . "something after context")
+               (((method (primitive 1) (task-net))) . "either a clause")
+               (((method m (primitive 1)) (method m (primitive 2))) . "is called m")
+               (((method method-3 (primitive 1)) (method (primitive 2))) . "is called method-3"))
+        do (let ((mistake (rap-mistake `(define-rap (index (foo)) (method (primitive 1))
+                                          ,@clauses))))
+             (is (and mistake (search text mistake)) "~S: ~A" clauses mistake))))
 
 (define-rap (index (rap-values ?x))
   (method (context (and (not (none ?y)) (or (at ?x ?n) (in ?x ?n)) (= ?m 7) (test (< n ?m 9))))

@@ -106,9 +106,7 @@ variables."
 (defun rap-code (index documentation clauses environment)
   (multiple-value-bind (call results) (split-result index)
     (let* ((known (mapcar #'variable-of (rest call)))
-           (methods (loop for clause in (clauses-named 'method clauses)
-                          for number from 1
-                          collect (parse-method clause number known results)))
+           (methods (parse-methods (clauses-named 'method clauses) known results))
            (succeed (query-clause 'succeed clauses)))
       (check-results results succeed known)
       (define-procedure-code
@@ -140,10 +138,11 @@ variables."
                                      (length missing) missing))))))
 
 (defun attempts-of (clauses)
-  (let ((clause (first (clauses-named 'attempts clauses))))
-    (unless (typep clause '(or null (cons t (cons (integer 1) null))))
-      (reject-part clause "(attempts n), with a positive integer"))
-    (if clause (second clause) 2)))
+  (let ((attempts (only-clause 'attempts clauses)))
+    (unless (typep attempts '(or null (cons (integer 1) null)))
+      (reject-part (first (clauses-named 'attempts clauses))
+                   "(attempts n), with a positive integer"))
+    (if attempts (first attempts) 2)))
 
 (defun check-index (index)
   (unless (and (proper-list-p index) (first index) (symbolp (first index))
@@ -193,6 +192,7 @@ Return the name. Signals MALFORMED-DEFINITION. (From RAP, after Firby 1989 and 1
     (check-clause-names clauses '(index succeed attempts resources method))
     (unless (typep index '(cons t (cons cons null)))
       (reject-part index "a clause (index (name ?argument...))"))
+    (only-clause 'index clauses)
     (check-index (second index))
     (unless (clauses-named 'method clauses)
       (reject-part index "at least one clause (method ...)"))

@@ -179,9 +179,12 @@ list of the variables of its results."
       (reject-part clause (format nil "one of the clauses ~{(~(~A~) ...)~^, ~}" names)))))
 
 (defun only-clause (name clauses)
-  "Return the rest of the clause NAME among CLAUSES, or NIL. Signal an error if there are several."
+  "Return the rest of the clause NAME among CLAUSES, or NIL. Signal an error if there are several,
+or if nothing follows the name."
   (let ((found (clauses-named name clauses)))
     (when (rest found) (reject-part (second found) (format nil "only one clause ~(~A~)" name)))
+    (when (and found (null (rest (first found))))
+      (reject-part (first found) (format nil "something after ~(~A~), or no such clause" name)))
     (rest (first found))))
 
 (defun query-clause (name clauses)
@@ -239,3 +242,16 @@ index, RESULTS those of its results."
        :body (if (string= 'task-net (first body))
                  (list (task-net-code body (append variables known) results))
                  (rejecting-code unbound context (code-with-variables (rest body))))))))
+
+(defun parse-methods (clauses known results)
+  "Return the methods of CLAUSES; see PARSE-METHOD. Signal an error unless their names differ."
+  (let ((methods '()))
+    (loop for clause in clauses
+          for number from 1
+          for method = (parse-method clause number known results)
+          for name = (rap-method-name method)
+          do (when (find name methods :key #'rap-method-name :test #'string=)
+               (reject-part clause (format nil "a method of another name: an earlier method is ~
+                                                called ~(~A~)" name)))
+             (push method methods))
+    (reverse methods)))
