@@ -84,3 +84,17 @@
   "Not before the other has begun, even if the query holds already."
   (is (equal '((3 pause) (4 b) (10 :over))
              (rap-notes (memory-add '(signal)) (run-plan 'rap-net-6)))))
+
+(define-rap (index (rap-leave ?x => ?y))
+  (resources arm)
+  (method (resources hand)
+          (primitive (setf y 1)
+                     (dolist (n '(1 2 3)) (wait-time 1) (setf y n) (when (= n 2) (return)))
+                     (unless (eq x 'on) (return "not a failure"))
+                     (setf y :end))))
+
+(test rap-definitions.return-ends-a-primitive-and-the-method-succeeds
+  (in-rap-run
+    (is (eql 2 (run-plan 'rap-leave 'off)))
+    (is (eq :end (run-plan 'rap-leave 'on)))
+    (is (eql 4 (simulation-tick)))))

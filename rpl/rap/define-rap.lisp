@@ -169,7 +169,8 @@ that it has tried least, and among equals the first. It fails with RAP-FAILED wh
 that it has tried fewer than N times. An error of Lisp ends the RAP.
 A query may also contain (test form), and (value ?x form), which gives ?x the value of FORM. FORM is
 Lisp, and the forms of a primitive are plan text. In both, ?x means the variable x, except in quoted
-data: there, it stays a variable of a pattern.
+data: there, it stays a variable of a pattern. (return) leaves a primitive, whose method has then
+succeeded; (fail) lets the method fail.
 A step of a task net is
   (tag (plan argument... [=> ?result...]) annotation...), (sequence step...) or (parallel step...)
 PLAN is a RAP or another plan. Steps run at the same time unless sequences and annotations order
