@@ -453,7 +453,7 @@
                  (:file "testbeds-tiles") (:file "testbeds-agents") (:file "testbeds-shell")
                  (:file "testbeds-trucks") (:file "rap") (:file "rap-memory") (:file "rap-random")
                  (:file "rap-seeing") (:file "rap-definitions") (:file "rap-rules")
-                 (:file "rap-agenda")
+                 (:file "rap-agenda") (:file "rap-resources")
                  (:file "experiments-report") (:file "experiment-compare")
                  (:file "experiments-pictures") (:file "pictures-kept")
                  (:file "experiment-compare-levels")

@@ -12,9 +12,6 @@
   "The priority with which the RAPs of a goal take their resources: a number. INSTALL-GOAL sets
 it.")
 
-(define-task-variable resources* nil
-  "The valves of the resources that tasks share: a list whose rest is an alist by name, or NIL.")
-
 ;;; What the plan text of RAPs calls.
 
 (defun holds-p (query) (and (solve query '()) t))
@@ -25,12 +22,13 @@ it.")
 (defun over-p (task)
   (over-word-p (fluent-value (task-status task))))
 
+;;; Resources belong to a robot: its plans and goals share them, and other robots have their own.
+
 (defun resource-valve (name)
-  "Return the valve of the resource NAME, in the plan of the calling task."
-  (let ((table (or resources*
-                   (reject-use "A resource can only be used in a RAP or WITH-RESOURCES."))))
-    (cdr (or (assoc name (rest table) :test #'value-equal)
-             (first (push (cons name (make-valve name)) (rest table)))))))
+  "Return the valve of the resource NAME of the robot that the calling task drives."
+  (let ((agent (agent-driven (current-task))))
+    (cdr (or (assoc name (agent-note agent 'resources) :test #'value-equal)
+             (first (push (cons name (make-valve name)) (agent-note agent 'resources)))))))
 
 ;;; The plan text.
 
@@ -43,31 +41,26 @@ it.")
 
 (defun with-resources-code (resources body)
   "Return plan text that runs the forms BODY while their task owns RESOURCES, names or variables."
-  (if resources
-      `(shown-as (resources ,@resources)
-         (with-valves (,@(loop for resource in resources
-                               collect `(resource-valve ,(if (variable-p resource)
-                                                             (variable-of resource)
-                                                             `',resource)))
-                       :priority goal-priority*)
-           ,@body))
-      `(seq ,@body)))
-
-(defun sharing-code (body)
-  "Return plan text that runs the form BODY with a table of resources, shared with the tasks
-around."
-  `(with-task-variables ((resources* (or resources* (list :resources))))
-     ,body))
+  (cond (resources
+         `(shown-as (resources ,@resources)
+            (with-valves (,@(loop for resource in resources
+                                  collect `(resource-valve ,(if (variable-p resource)
+                                                                (variable-of resource)
+                                                                `',resource)))
+                          :priority goal-priority*)
+              ,@body)))
+        ((rest body) `(seq ,@body))
+        (t (first body))))
 
 (def-interp-macro (with-resources ?names . ?forms)
   "Run FORMS in a plan while their task owns the resources NAMES, symbols that are not evaluated, or
-?x for the value of the variable x. If another task owns one, wait. GOAL-PRIORITY* is the priority:
-a task with a higher priority than the owner's takes the resource, and the owner is suspended
-meanwhile. The parts of FORMS share their resources, and so do the goals of an agenda. Return the
-values of FORMS."
+?x for the value of the variable x. Resources belong to the robot that the plan drives: if another
+task for this robot, of any plan or goal, owns one, wait. GOAL-PRIORITY* is the priority: a task
+with a higher priority than the owner's takes the resource, and the owner is suspended meanwhile. A
+part of the owner can own the resource as well, one part at a time. Return the values of FORMS."
   (unless (and (proper-list-p names) names (every #'symbolp names))
     (reject-clause "with-resources" names "a list of names"))
-  (sharing-code (with-resources-code names forms)))
+  (with-resources-code names forms))
 
 (defun method-code (method results)
   "Return the element of a form RAP-TRIES for METHOD. Variables that are RESULTS of the RAP are
@@ -115,10 +108,9 @@ variables."
          (let ,results
            (declare (ignorable ,@known))
            (shown-as ,call
-             ,(sharing-code
-               (with-resources-code (checked-resources clauses known)
-                                    (list (tries-code call methods succeed results known
-                                                      (attempts-of clauses))))))
+             ,(with-resources-code (checked-resources clauses known)
+                                   (list (tries-code call methods succeed results known
+                                                     (attempts-of clauses)))))
            ,(value-code succeed results known)))
        clauses environment))))
 

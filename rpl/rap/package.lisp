@@ -23,10 +23,10 @@ deadlines. Use this package together with ARS and NISP.")
                 #:runner-timers #:plan-runner-tick #:make-ready #:note-event
                 #:agent-note #:runner-agents #:task-agent #:task-index #:status-word #:all-tasks
                 #:enter-plan #:*calling-task* #:agent-runner #:inside-plans-p
-                #:note-from-outside)
+                #:note-from-outside #:current-task)
   (:import-from :ars-magna.rpl.fluents #:post-entry)
   (:import-from :ars-magna.rpl-robot #:usable-interface #:interface-runner
-                #:call-with-plans-in-use)
+                #:call-with-plans-in-use #:agent-driven)
   (:import-from :ars-magna.nisp #:matchvar-p #:matchvar-name)
   (:export #:memory-add #:memory-delete #:memory-set #:memory-holds-p #:memory-query #:memory-tick
            #:main-memory* #:dump-memory #:reset-memory #:define-memory-rule

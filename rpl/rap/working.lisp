@@ -154,8 +154,7 @@ particular. Work on at most AT-ONCE goals at the same time: first on the goals w
 priority, and among equals the earliest deadline. Each is a task, such as goal 3 (bring cup table).
 Return the number of goals achieved. Signals MISUSE if a plan already works on the agenda for the
 robot."
-  (with-task-variables ((resources* (or resources* (list :resources))))
-    (work-on-goals (rpl-robot) nil at-once)))
+  (work-on-goals (rpl-robot) nil at-once))
 
 (defun process-goal-agenda ()
   "Work on the goals of the agenda of the current run, by the plan WORK-ON-AGENDA, until none is
@@ -164,8 +163,7 @@ left. Return the number of goals achieved. In a plan, call WORK-ON-AGENDA. (From
 
 (def-interp-proc work-on-goal (number)
   "Work on the goal NUMBER only."
-  (with-task-variables ((resources* (list :resources)))
-    (work-on-goals (rpl-robot) number 1)))
+  (work-on-goals (rpl-robot) number 1))
 
 (defun execute-goal (goal &optional (priority 0) deadline)
   "Work on GOAL only, as INSTALL-GOAL and PROCESS-GOAL-AGENDA do. Return true if it is achieved.

@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.rpl-robot)
 
-(export '(driver-interface driver-of-task ensure-driver fluent-of-robot robot-name-of-plan))
+(export '(driver-interface driver-of-task ensure-driver fluent-of-robot robot-name-of-plan
+          agent-driven))
 
 ;;; A robot gets a driver when plans first drive it, and a new one at each RPL-INIT-ROBOT. The
 ;;; functions and variables for plans mean one driver: in a plan that of the innermost ON-ROBOT or
@@ -88,6 +89,11 @@ robots, or if its plans drive no robot."
 (defun driver-of-plan (task)
   "Return the driver of the robot for which the plan of TASK was begun."
   (task-client task))
+
+(defun agent-driven (task)
+  "Return the agent of the robot that TASK drives, or of the plan of TASK if it drives no robot."
+  (let ((driver (driver-of-task task)))
+    (if (driver-p driver) (driver-agent driver) (task-agent task))))
 
 (defmethod robot-name-of-client ((driver driver))
   (robot-name (driver-robot driver)))
