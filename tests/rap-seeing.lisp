@@ -136,6 +136,24 @@
     (is (eq t (run-plan 'see-unload 'box)))
     (is (null main-memory*))))
 
+(define-rap (index (see-enter ?room))
+  (succeed (in ?room))
+  (method (task-net (sequence (a (see-unlock ?room)) (b (rap-work ?room 1))))))
+(define-rap (index (see-unlock ?room)) (method (task-net (sequence (a (see-enter ?room))))))
+(define-rap (index (see-enter-slowly ?room))
+  (method (task-net (sequence (a (rap-work ?room 1)) (b (see-leave-slowly ?room))))))
+(define-rap (index (see-leave-slowly ?room))
+  (method (task-net (a (see-enter-slowly ?room)))))
+
+(test rap-seeing.raps-that-call-each-other-without-end-fail
+  "Once: what is too deep is not tried again at each level."
+  (in-rap-run
+    (dolist (name '(see-enter see-enter-slowly))
+      (let ((failure (failure-of-run name 'hall)))
+        (is (eq :too-deep (failure-class failure)))
+        (is (has (format nil "The RAP (~(~A~) hall) calls itself" name) (princ-to-string failure))
+            "~A" failure)))))
+
 (define-rap (index (see-spin)) (succeed (never)) (attempts 1000000000) (method (primitive (fail))))
 
 (test rap-seeing.a-rap-that-tries-on-without-waiting-is-told
