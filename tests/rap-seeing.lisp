@@ -222,3 +222,38 @@
     (let ((told (printed (progn (install-goal '(see-stew soup)) (process-goal-agenda)
                                 (dump-agenda)))))
       (is (has "(see-stew soup): (slowly): (burnt soup) has ended the step stir" told) "~A" told))))
+
+;;; Goals.
+
+(def-interp-proc see-drive (metres)
+  (rpl-robot-go-distance metres)
+  (wait-for robot-stopped*))
+
+(test rap-seeing.goals-that-take-the-robot-from-each-other-are-named
+  (dolist (deadline '(nil 50))
+    (in-rap-run
+      (install-goal '(see-drive 3) 0 deadline)
+      (install-goal '(see-drive 2) 0 deadline)
+      (process-goal-agenda)
+      (let ((told (find "was interrupted by" (ars-magna.tests::texts-of-warnings) :test #'search)))
+        (is (and told (has "of goal 1 (see-drive 3) in the plan work-on-agenda" told)
+                 (has "of goal 2 (see-drive 2) in the plan work-on-agenda" told))
+            "~A" told)))))
+
+;;; The debugger.
+
+(define-rap (index (see-doubt ?x))
+  (method (context (and (size ?x ?n) (test (< ?n 5)))) (primitive (note-rap :small))))
+
+(test rap-seeing.restarts-name-the-test-with-the-error
+  (let* ((restarts '())
+         (*break-on-user-error* t)
+         (notes (with-debugger-hook ((lambda (condition hook)
+                                       (declare (ignore hook))
+                                       (setf restarts (mapcar #'princ-to-string
+                                                              (compute-restarts condition)))
+                                       (use-value t condition)))
+                  (rap-notes (memory-add '(size cup big)) (run-plan 'see-doubt 'cup)))))
+    (is (equal '((0 :small)) notes))
+    (is (equal '("Do (test (< ?n 5)) again." "Let (test (< ?n 5)) return a value.")
+               (subseq restarts 0 2)))))

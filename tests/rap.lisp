@@ -3,6 +3,7 @@
 (ars:define-user-package :ars-magna.tests.rap
   (:documentation "Tests of reactive action packages, in the words of their users.")
   (:use :cl :ars :nisp :ars-rap)
+  (:import-from :ars-magna.basics #:with-debugger-hook)
   (:import-from :ars-magna.tests #:def-suite* #:in-suite #:test #:is #:signals))
 
 (in-package :ars-magna.tests.rap)

@@ -23,7 +23,8 @@ deadlines. Use this package together with ARS and NISP.")
                 #:runner-timers #:plan-runner-tick #:make-ready #:note-event
                 #:agent-note #:runner-agents #:task-agent #:task-index #:status-word #:all-tasks
                 #:enter-plan #:*calling-task* #:agent-runner #:inside-plans-p
-                #:note-from-outside #:current-task)
+                #:note-from-outside #:current-task #:*leaves-offer-restarts*
+                #:call-with-value-restarts)
   (:import-from :ars-magna.rpl.fluents #:post-entry)
   (:import-from :ars-magna.rpl-robot #:usable-interface #:interface-runner
                 #:call-with-plans-in-use #:agent-driven)

@@ -52,14 +52,14 @@ before QUERY, which is a part of the query WHOLE."
                                collect (part-code part)
                                do (setf bound (variables-after part bound)))))
       ((or not) `(list ',(query-operator query) ,@(mapcar #'part-code (rest query))))
-      (test `(list* 'test ,(form-code (second query) known bound whole)))
+      (test `(list* 'test ,(form-code query (second query) known bound whole)))
       (value `(list* 'value ,(pattern-code (second query) known)
-                     ,(form-code (third query) known bound whole)))
+                     ,(form-code query (third query) known bound whole)))
       (t (pattern-code query known)))))
 
-(defun form-code (form known bound whole)
-  "Return code for a list of a function that does FORM, which is Lisp in the query WHOLE, and the
-variables that are its arguments: see QUERY-CODE."
+(defun form-code (query form known bound whole)
+  "Return code for a list of a function that does FORM, the Lisp of QUERY, which is a part of the
+query WHOLE, and the variables that are its arguments: see QUERY-CODE."
   (let ((arguments (loop for marked in (marked-variables whole)
                          for variable = (code-variable marked)
                          when (and (member variable bound)
@@ -67,9 +67,19 @@ variables that are its arguments: see QUERY-CODE."
                                    (mentions-variable-p form variable))
                            collect marked)))
     `(list* (lambda ,(mapcar #'code-variable arguments)
-              ,@(rejecting-code (set-difference (code-variables whole) bound) whole
-                                (list (code-with-variables form))))
+              (value-of-part
+               ',query
+               (lambda ()
+                 ,@(rejecting-code (set-difference (code-variables whole) bound) whole
+                                   (list (code-with-variables form))))))
             ',arguments)))
+
+(defun value-of-part (query function)
+  "Return the value of FUNCTION, which does the Lisp of QUERY, (test form) or (value ?x form). In
+the debugger, restarts do it again or give it a value."
+  (if *leaves-offer-restarts*
+      (call-with-value-restarts query function)
+      (funcall function)))
 
 (defun mentions-variable-p (form variable)
   (cond ((quoted-p form) nil)

@@ -2,9 +2,9 @@
 
 (in-package :ars-magna.rpl.tasks)
 
-(export '(+nothing+ +parked+ bundle-p call-leaf completion-p enter escape-p leaf-p make-bundle
-          make-completion make-escape make-leaf park park-again reject-missing-slot single-value
-          wake))
+(export '(*leaves-offer-restarts* +nothing+ +parked+ bundle-p call-leaf call-with-value-restarts
+          completion-p enter escape-p leaf-p make-bundle make-completion make-escape make-leaf park
+          park-again reject-missing-slot single-value wake))
 
 ;;; A signal ends or redirects a task: a PLAN-FAILURE; an ESCAPE to an enclosing node, perhaps of an
 ;;; enclosing task; the word :EVAPORATE; or a COMPLETION, by which the construct that the task
@@ -50,7 +50,8 @@ environment."))
 (defun call-leaf (leaf environment)
   "Return the value of LEAF in ENVIRONMENT."
   (if *leaves-offer-restarts*
-      (call-leaf-with-restarts leaf environment)
+      (call-with-value-restarts (node-form leaf)
+                                (lambda () (funcall (leaf-function leaf) environment)))
       (funcall (leaf-function leaf) environment)))
 
 (defun read-leaf-value ()
@@ -61,11 +62,11 @@ environment."))
 (defvar *inside-leaf-restarts-p* nil
   "True while a leaf offers restarts. If true, the step around the leaf offers no restarts.")
 
-(defun call-leaf-with-restarts (leaf environment)
-  "Return the value of LEAF in ENVIRONMENT, with the restarts RETRY and USE-VALUE."
-  (let ((text (form-text (node-form leaf))) (*inside-leaf-restarts-p* t))
+(defun call-with-value-restarts (form function)
+  "Return what FUNCTION returns, the value of FORM, with the restarts RETRY and USE-VALUE."
+  (let ((text (form-text form)) (*inside-leaf-restarts-p* t))
     (loop
-      (restart-case (return (funcall (leaf-function leaf) environment))
+      (restart-case (return (funcall function))
         (retry ()
           :report (lambda (stream) (format stream "Do ~A again." text)))
         (use-value (value)
