@@ -213,3 +213,26 @@
           (go-on)
           (is (equal ahead (list (goal-states) (mapcar #'first main-memory*))))
           (is (equal '(1 2 3) goals)))))))
+
+;;; Threads.
+
+(test rap-agenda.threads-and-plans-lose-no-goal
+  (in-live-rap-run
+    (let ((run (current-simulation)))
+      (install-goal '(rap-attend))
+      (begin-plan 'work-on-agenda)
+      (mapc #'ars-magna.base:join-thread
+            (loop for thread below 3
+                  collect (let ((thread thread))
+                            (ars-magna.base:start-thread
+                             (lambda ()
+                               (dotimes (n 6)
+                                 (asking (run)
+                                   (set-goal-priority
+                                    (install-goal (list 'rap-work (list thread n) 1)) n))))
+                             "installing"))))
+      (set-value *rap-signal* t)
+      (await-idle)
+      (set-value *rap-signal* nil)
+      (is (= 18 (length (memory-query '?n '(done ?n)))))
+      (is (null (agenda-goals '(:waiting :active)))))))

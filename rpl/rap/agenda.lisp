@@ -56,19 +56,23 @@ ONLY is the number of its only goal, or NIL."
       (dolist (agent (runner-agents (interface-runner interface)))
         (when (goal-workers agent) (wake-goal-workers agent))))))
 
-(defun change-agenda (rows)
-  (setf main-agenda* rows)
-  (announce-change))
+(defmacro changing-agenda (&body body)
+  "Run BODY, which reads and sets the agenda, while the run stands still: no change by another
+thread comes in between. Then announce the change. Return the values of BODY."
+  `(multiple-value-prog1 (asking ((current-simulation)) ,@body)
+     (announce-change)))
 
 (defun change-goal (number &key priority state (note ""))
-  "Give the goal NUMBER another PRIORITY, or another STATE with a NOTE."
-  (change-agenda
-   (loop for row in main-agenda*
-         collect (if (eql number (first row))
-                     (destructuring-bind (old-priority deadline old-state old-note robot) (cddr row)
-                       (list number (second row) (or priority old-priority) deadline
-                             (or state old-state) (if state note old-note) robot))
-                     row))))
+  "Give the goal NUMBER another PRIORITY, or another STATE with a NOTE. Return true if the goal is
+on the agenda."
+  (changing-agenda
+    (let ((row (agenda-row number)))
+      (when row
+        (destructuring-bind (goal old-priority deadline old-state old-note robot) (rest row)
+          (setf main-agenda* (substitute (list number goal (or priority old-priority) deadline
+                                               (or state old-state) (if state note old-note) robot)
+                                         number main-agenda* :key #'first)))
+        t))))
 
 (defun set-goal-state (number state &optional (note ""))
   (change-goal number :state state :note note))
@@ -82,10 +86,12 @@ achieved at the tick DEADLINE or before; NIL means any time. If ROBOT is given, 
 only the plans of that robot work on the goal. Return the number of the goal. Arguments are plain
 data, or things and robots of the run. Signals WRONG-ARGUMENT and UNKNOWN-NAME. (From RAP.)"
   (check-goal 'install-goal goal priority deadline)
-  (let ((number (incf goals-installed*)) (robot (and robot (find-robot robot))))
-    (change-agenda (append main-agenda*
-                           (list (list number goal priority deadline :waiting "" robot))))
-    number))
+  (let ((robot (and robot (find-robot robot))))
+    (changing-agenda
+      (let ((number (1+ goals-installed*)))
+        (setf main-agenda* (append main-agenda*
+                                   (list (list number goal priority deadline :waiting "" robot)))
+              goals-installed* number)))))
 
 (defun check-number (operator number)
   (unless (integerp number) (reject-argument operator 'number number "the number of a goal")))
@@ -94,9 +100,10 @@ data, or things and robots of the run. Signals WRONG-ARGUMENT and UNKNOWN-NAME. 
   "Remove the goal NUMBER, as INSTALL-GOAL returns it, from the agenda of the current run. If it is
 active, its task evaporates. Return true if it was there. Signals WRONG-ARGUMENT."
   (check-number 'remove-goal number)
-  (when (agenda-row number)
-    (change-agenda (remove number main-agenda* :key #'first))
-    t))
+  (changing-agenda
+    (when (agenda-row number)
+      (setf main-agenda* (remove number main-agenda* :key #'first))
+      t)))
 
 (defun set-goal-priority (number priority)
   "Give the goal NUMBER, as INSTALL-GOAL returns it, another PRIORITY. If it is active, this holds
@@ -104,14 +111,12 @@ for resources that it requests from now on. Return true if the goal is on the ag
 run. Signals WRONG-ARGUMENT."
   (check-number 'set-goal-priority number)
   (check-priority 'set-goal-priority priority)
-  (when (agenda-row number)
-    (change-goal number :priority priority)
-    t))
+  (change-goal number :priority priority))
 
 (defun reset-agenda ()
   "Remove all goals from the agenda of the current run. The tasks of active goals evaporate. Return
 nothing. (From RAP.)"
-  (change-agenda '())
+  (changing-agenda (setf main-agenda* '()))
   (values))
 
 (defun suspended-goals ()

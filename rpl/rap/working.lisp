@@ -23,8 +23,9 @@ plan."
 
 (defun note-interruption (number)
   "Mark the goal NUMBER as failed if it is still active: its work was ended from outside."
-  (when (eq :active (goal-state number))
-    (set-goal-state number :failed "Its plan was ended.")))
+  (changing-agenda
+    (when (eq :active (goal-state number))
+      (set-goal-state number :failed "Its plan was ended."))))
 
 (def-interp-proc pursue-goal (number goal deadline)
   "Work for GOAL, the active goal NUMBER. If the work is ended from outside, it has failed."
