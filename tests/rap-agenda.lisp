@@ -48,6 +48,20 @@
                      do (apply #'install-goal `(rap-work ,what 1) order))
                (is (= 5 (run-plan 'work-on-agenda :at-once 1)))))))
 
+;;; Resources.
+
+(define-rap (index (rap-deep-use ?what ?ticks))
+  (method (task-net (work (rap-use ?what ?ticks)))))
+
+(test rap-agenda.goals-that-begin-together-request-resources-in-their-order
+  "However deep in the plan of a goal the request is."
+  (dolist (order '((2) (1 50) (2 50)))
+    (is (equal '((3 b) (6 a))
+               (rap-notes
+                 (install-goal '(rap-use a 3) 1)
+                 (apply #'install-goal '(rap-deep-use b 3) order)
+                 (is (= 2 (process-goal-agenda))))))))
+
 ;;; Deadlines.
 
 (test rap-agenda.a-goal-may-be-achieved-at-its-deadline

@@ -46,13 +46,15 @@ plan."
 (defun suspended-p (task) (eq :suspended (status-word task (task-state task))))
 
 (defun start-goal (row)
-  "Start a task for the goal of ROW, as a part of the task around the calling task."
+  "Start a task for the goal of ROW, as a part of the task around the calling task. Its level is
+above that of the calling task, which goes on when the goal waits: then the goal has requested its
+first resources."
   (destructuring-bind (number goal priority deadline &rest others) row
     (declare (ignore others))
     (multiple-value-bind (body environment) (enter-plan 'pursue-goal number goal deadline)
       (let ((whole (task-parent (current-task))) (task (make-task (goal-label number goal) body)))
         (set-goal-state number :active)
-        (spawn whole body environment number (task-level whole) task)
+        (spawn whole body environment number (1+ (task-level whole)) task)
         (give-priority task priority)))))
 
 (defun give-priority (task priority)
@@ -90,14 +92,11 @@ their priorities. TAKEN is a list of conses (number . priority)."
              (setf (cdr goal) (third row))
              (give-priority task (third row)))))))
 
-(defun start-goals (robot only taken at-once)
-  "Start tasks for waiting goals, at most AT-ONCE at the same time. Return TAKEN with those goals."
-  (loop for rows = (stable-sort (goals-for robot only :waiting) #'before-p)
-        while (and rows (< (count :active taken :key (lambda (goal) (goal-state (first goal))))
-                           at-once))
-        do (start-goal (first rows))
-           (push (cons (first (first rows)) (third (first rows))) taken))
-  taken)
+(defun goal-to-start (robot only taken at-once)
+  "Return the row of the waiting goal to start next, or NIL if AT-ONCE goals are worked on."
+  (and (or (null at-once)
+           (< (count :active taken :key (lambda (goal) (goal-state (first goal)))) at-once))
+       (first (stable-sort (goals-for robot only :waiting) #'before-p))))
 
 (defun next-deadline (rows)
   "Return in how many ticks the first deadline of the goals of ROWS is over, or NIL."
@@ -106,12 +105,16 @@ their priorities. TAKEN is a list of conses (number . priority)."
 
 (def-interp-proc look-after-goals (robot only at-once changed)
   "Work on goals until none is left. Return a list of conses (number . priority) of the goals."
-  (let ((taken '()))
+  (let ((taken '()) (row nil))
     (loop
       (set-value changed nil)
       (fail-overdue-goals (goals-for robot only :waiting))
       (tend-goals taken)
-      (setf taken (start-goals robot only taken at-once))
+      (loop
+        (setf row (goal-to-start robot only taken at-once))
+        (unless row (return nil))
+        (push (cons (first row) (third row)) taken)
+        (start-goal row))
       (unless (or (goals-for robot only :waiting) (goals-for robot only :active))
         (return taken))
       (wait-for changed :timeout (next-deadline (goals-for robot only :waiting))))))
