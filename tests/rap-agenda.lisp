@@ -62,6 +62,47 @@
                  (apply #'install-goal '(rap-deep-use b 3) order)
                  (is (= 2 (process-goal-agenda))))))))
 
+;;; Limits.
+
+(test rap-agenda.the-last-100-goals-that-have-ended-stay
+  (in-rap-run
+    (install-goal '(rap-attend) 1)
+    (begin-plan 'work-on-agenda)
+    (dotimes (i 6)
+      (dotimes (j 20)
+        (install-goal (if (zerop i) '(rap-try ball) (list 'rap-quick j))))
+      (run-ticks 2))
+    (set-value *rap-signal* t)
+    (run-ticks 2)
+    (set-value *rap-signal* nil)
+    (is (equal (cons 1 (loop for number from 23 to 121 collect number))
+               (mapcar (lambda (goal) (getf goal :number)) (agenda-goals))))
+    (is (every (lambda (state) (eq :achieved state)) (goal-states)))))
+
+(test rap-agenda.ended-goals-with-long-data-leave-room-for-others
+  (in-rap-run
+    (dotimes (i 30) (install-goal (list 'rap-quick (make-string 250))))
+    (is (= 30 (process-goal-agenda)))
+    (dotimes (i 30) (install-goal (list 'rap-quick (make-string 250))))
+    (is (= 30 (process-goal-agenda)))
+    (is (= 38 (length main-agenda*)))))
+
+(test rap-agenda.a-full-agenda-refuses-goals
+  (in-rap-run
+    (let ((ars-rap::*open-goals-limits* '(3 8000)))
+      (dotimes (i 3) (install-goal '(rap-quick a)))
+      (signals misuse (install-goal '(rap-quick a)))
+      (is (= 3 (process-goal-agenda)))
+      (is (= 4 (install-goal '(rap-quick a)))))
+    (signals misuse (install-goal (list 'rap-quick (make-string 8000))))))
+
+(test rap-agenda.goals-with-other-than-plain-data-are-refused
+  (in-rap-run
+    (handler-case (install-goal (list 'rap-quick #'car))
+      (wrong-argument (condition)
+        (is (search "install-goal: goal is" (princ-to-string condition)) "~A" condition)))
+    (is (null main-agenda*))))
+
 ;;; Deadlines.
 
 (test rap-agenda.a-goal-may-be-achieved-at-its-deadline

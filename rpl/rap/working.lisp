@@ -27,14 +27,15 @@ plan."
     (when (eq :active (goal-state number))
       (set-goal-state number :failed "Its plan was ended."))))
 
-(def-interp-proc pursue-goal (number goal deadline)
-  "Work for GOAL, the active goal NUMBER. If the work is ended from outside, it has failed."
+(def-interp-proc pursue-goal (number goal deadline achieved)
+  "Work for GOAL, the active goal NUMBER. If the work is ended from outside, it has failed. If it is
+achieved, count it in ACHIEVED, a list of a number."
   (evap-protect
       (handle-failure ((t (failure) (note-failure number goal deadline failure) (return nil)))
         (if deadline
             (with-deadline ((ticks-left deadline)) (apply-plan (first goal) (rest goal)))
             (apply-plan (first goal) (rest goal)))
-        (set-goal-state number :achieved))
+        (when (set-goal-state number :achieved) (incf (first achieved))))
     (note-interruption number)))
 
 (defun goal-label (number goal) (format nil "goal ~D ~A" number (data-text goal)))
@@ -45,13 +46,13 @@ plan."
 
 (defun suspended-p (task) (eq :suspended (status-word task (task-state task))))
 
-(defun start-goal (row)
+(defun start-goal (row achieved)
   "Start a task for the goal of ROW, as a part of the task around the calling task. Its level is
 above that of the calling task, which goes on when the goal waits: then the goal has requested its
-first resources."
+first resources. ACHIEVED is as for PURSUE-GOAL."
   (destructuring-bind (number goal priority deadline &rest others) row
     (declare (ignore others))
-    (multiple-value-bind (body environment) (enter-plan 'pursue-goal number goal deadline)
+    (multiple-value-bind (body environment) (enter-plan 'pursue-goal number goal deadline achieved)
       (let ((whole (task-parent (current-task))) (task (make-task (goal-label number goal) body)))
         (set-goal-state number :active)
         (spawn whole body environment number (1+ (task-level whole)) task)
@@ -84,13 +85,15 @@ first resources."
 (defun tend-goals (taken)
   "Evaporate the tasks of goals among TAKEN that are no longer on the agenda, and give the others
 their priorities. TAKEN is a list of conses (number . priority)."
-  (dolist (task (task-children (task-parent (current-task))))
-    (let* ((goal (assoc (task-index task) taken)) (row (and goal (agenda-row (first goal)))))
-      (cond ((null goal))
-            ((null row) (evaporate task))
-            ((/= (cdr goal) (third row))
-             (setf (cdr goal) (third row))
-             (give-priority task (third row)))))))
+  (loop with rows = main-agenda*
+        for task in (task-children (task-parent (current-task)))
+        for goal = (assoc (task-index task) taken)
+        for row = (and goal (assoc (first goal) rows))
+        do (cond ((null goal))
+                 ((null row) (evaporate task))
+                 ((/= (cdr goal) (third row))
+                  (setf (cdr goal) (third row))
+                  (give-priority task (third row))))))
 
 (defun goal-to-start (robot only taken at-once)
   "Return the row of the waiting goal to start next, or NIL if AT-ONCE goals are worked on."
@@ -103,8 +106,8 @@ their priorities. TAKEN is a list of conses (number . priority)."
   (let ((deadlines (remove nil (mapcar #'fourth rows))))
     (and deadlines (ticks-left (reduce #'min deadlines)))))
 
-(def-interp-proc look-after-goals (robot only at-once changed)
-  "Work on goals until none is left. Return a list of conses (number . priority) of the goals."
+(def-interp-proc look-after-goals (robot only at-once changed achieved)
+  "Work on goals until none is left."
   (let ((taken '()) (row nil))
     (loop
       (set-value changed nil)
@@ -114,9 +117,9 @@ their priorities. TAKEN is a list of conses (number . priority)."
         (setf row (goal-to-start robot only taken at-once))
         (unless row (return nil))
         (push (cons (first row) (third row)) taken)
-        (start-goal row))
+        (start-goal row achieved))
       (unless (or (goals-for robot only :waiting) (goals-for robot only :active))
-        (return taken))
+        (return nil))
       (wait-for changed :timeout (next-deadline (goals-for robot only :waiting))))))
 
 (defun join-workers (robot only)
@@ -141,14 +144,13 @@ Signals MISUSE if another task works on the agenda for ROBOT."
 
 (def-interp-proc work-on-goals (robot only at-once)
   "Work on the goals for ROBOT, or only on the goal ONLY. Return how many were achieved."
-  (let ((changed (join-workers robot only)) (taken '()))
+  (let ((changed (join-workers robot only)) (achieved (list 0)))
     (evap-protect
         (loop
-          (par (:tag more-goals
-                 (setf taken (append (look-after-goals robot only at-once changed) taken))))
+          (par (:tag more-goals (look-after-goals robot only at-once changed achieved)))
           ;; Others may have come while the last tasks cleaned up.
           (unless (goals-for robot only :waiting)
-            (return (count :achieved taken :key (lambda (goal) (goal-state (first goal)))))))
+            (return (first achieved))))
       (leave-workers changed))))
 
 (def-interp-proc work-on-agenda (&key (at-once 8))
@@ -173,5 +175,4 @@ left. Return the number of goals achieved. In a plan, call WORK-ON-AGENDA. (From
   "Work on GOAL only, as INSTALL-GOAL and PROCESS-GOAL-AGENDA do. Return true if it is achieved.
 Signals WRONG-ARGUMENT. (From RAP.)"
   (let ((number (install-goal goal priority deadline)))
-    (run-plan 'work-on-goal number)
-    (eq :achieved (goal-state number))))
+    (eql 1 (run-plan 'work-on-goal number))))
