@@ -255,6 +255,21 @@
         (run-ticks 3)
         (let* ((goals (mapcar #'first main-agenda*))
                (states (list (goal-states) (state-digest)))
+(test rap-agenda.goals-of-a-run-that-was-saved-without-its-plans-wait-again
+  (ars-magna.tests::with-temporary-file (file)
+    (in-rap-run
+      (install-goal '(rap-work a 40))
+      (begin-plan 'work-on-agenda)
+      (run-ticks 10)
+      (handler-bind ((error (lambda (condition)
+                              (invoke-restart (find-restart 'save-without condition)))))
+        (save-simulation file)))
+    (let ((*rap-notes* '()))
+      (with-loaded-simulation (file)
+        (is (equal '(:active) (goal-states)))
+        (is (= 1 (process-goal-agenda)))
+        (is (equal '((50 a)) *rap-notes*))))))
+
                (ahead (with-fork () (go-on) (list (goal-states) (mapcar #'first main-memory*)))))
           (is (equal states (list (goal-states) (state-digest))))
           (go-on)
