@@ -285,17 +285,20 @@
     (reset-agenda)
     (is (null main-agenda*))))
 
-(test rap.an-error-of-lisp-in-a-goal-is-told-with-its-place
-  (in-rap-run
-    (let* ((goal '(rap-broken))
-           (told (with-output-to-string (*error-output*)
-                   (handler-bind ((warning (lambda (warning)
-                                             (format *error-output* "~A" warning)
-                                             (muffle-warning warning))))
-                     (is (not (execute-goal goal)))))))
-      (is (search "(rap-broken) failed" told) "~A" told)
-      (is (search "broken arm" told))
-      (is (search "at tick 0 in" told)))))
+(test rap.an-error-of-lisp-in-a-goal-is-reported-as-that-of-a-plan
+  (with-simulation (rapper :seed 1 :errors :collect)
+    (is (not (execute-goal '(rap-broken))))
+    (let ((told (with-output-to-string (*standard-output*) (error-display))))
+      (is (search "broken arm" told) "~A" told)
+      (is (search "at tick 0 in" told)))
+    (is (search "broken arm" (getf (first (agenda-goals)) :note))))
+  (handler-case (with-simulation (rapper :errors :signal)
+                  (install-goal '(rap-broken))
+                  (begin-plan 'work-on-agenda)
+                  (run-ticks 5)
+                  (is (null :signal)))
+    (user-code-error (condition)
+      (is (search "The goal (rap-broken) failed: " (princ-to-string condition)) "~A" condition))))
 
 (test rap.a-goal-whose-plan-is-ended-has-failed
   (in-rap-run

@@ -16,7 +16,8 @@ deadlines. Use this package together with ARS and NISP.")
                 #:next #:at-once #:value #:child #:how #:result #:environment #:memory
                 #:block-code #:body-code #:plan-code #:value-lambda #:variable-scope
                 #:single-value-scope #:note-expansion #:form-as-written)
-  (:import-from :ars-magna.rpl.tasks #:failure-text #:write-failure #:node #:node-form #:frame
+  (:import-from :ars-magna.rpl.tasks #:failure-text #:write-failure #:report-failure
+                #:node #:node-form #:frame
                 #:frame-data #:frame-up #:frames-around #:task-frame
                 #:failure-of #:current-form #:make-task #:spawn #:park #:park-again #:+parked+
                 #:task-level #:end-with-value #:end-with-signal #:awaited-text #:traced-subject

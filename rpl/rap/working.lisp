@@ -5,13 +5,12 @@
 ;;; The task of a goal.
 
 (defun note-failure (number goal deadline failure)
-  "Mark GOAL, the goal NUMBER, as failed by FAILURE. Warn of an error of Lisp, with its place in the
-plan."
+  "Mark GOAL, the goal NUMBER, as failed by FAILURE. Report an error of Lisp as that of a plan."
   (set-goal-state number :failed (if (overdue-p deadline)
                                      (late-text deadline)
                                      (failure-text failure)))
   (when (typep failure 'lisp-failure)
-    (warn "The goal ~A failed: ~S" (data-text goal) failure)))
+    (report-failure failure nil (format nil "The goal ~A" (data-text goal)))))
 
 (defun overdue-p (deadline) (and deadline (< deadline (now))))
 

@@ -132,17 +132,17 @@ matches Lisp errors; otherwise NIL."
           (write-string (cut (one-line-failure-text failure) 600) stream)))
       (call-next-method)))
 
-(defun report-failure (failure &optional awaited-p)
+(defun report-failure (failure &optional awaited-p subject)
   "Queue an error message about FAILURE, the failure of a plan. The message has the place and task
 of the failure, the expressions in progress, and the Lisp backtrace of an error. In a run of several
 robots, a USER-CODE-ERROR names *REPORTED-ROBOT*. If AWAITED-P is true, the caller also learns of
-the failure."
+the failure. SUBJECT is a text for what has failed, such as \"The goal (go 3)\", if not the plan."
   (let ((text (with-output-to-string (stream) (write-failure-report failure stream))))
     (if awaited-p
         (queue-message (make-message :error (list text) :told-p (not (typep failure 'lisp-failure)))
                        *message-queue*)
         (queue-user-error failure
-                          (format nil "The plan ~A~@[ of ~A~] failed: ~A"
+                          (format nil "~@[~A~]~:*~:[The plan ~A~;~*~]~@[ of ~A~] failed: ~A" subject
                                   (first (failure-task-path failure))
                                   (robot-text (funcall *get-reporting-run*) *reported-robot*)
                                   (brief-failure-text failure))
