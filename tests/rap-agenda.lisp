@@ -64,6 +64,14 @@
 
 ;;; Limits.
 
+(test rap-agenda.unimportant-goals-do-not-block-an-urgent-one
+  (in-rap-run
+    (dotimes (i 20) (install-goal '(rap-work a 60) -5))
+    (install-goal '(rap-work b 1) 100 5)
+    (is (= 21 (process-goal-agenda)))
+    (is (= 60 (simulation-tick)))
+    (is (typep (failure-of-run 'work-on-agenda :at-once 0) 'lisp-failure))))
+
 (test rap-agenda.the-last-100-goals-that-have-ended-stay
   (in-rap-run
     (install-goal '(rap-attend) 1)

@@ -160,13 +160,15 @@ Signals MISUSE if another task works on the agenda for ROBOT."
             (return (first achieved))))
       (leave-workers changed))))
 
-(def-interp-proc work-on-agenda (&key (at-once 8))
+(def-interp-proc work-on-agenda (&key at-once)
   "Work on the goals of the agenda of the current run until none is waiting or active, also on goals
 that are installed meanwhile: on those for the robot of this plan, and those for no robot in
-particular. Work on at most AT-ONCE goals at the same time: first on the goals with the highest
-priority, and among equals the earliest deadline. Each is a task, such as goal 3 (bring cup table).
-Return the number of goals achieved. Signals MISUSE if a plan already works on the agenda for the
-robot."
+particular. Begin with the goals with the highest priority and, among equals, the earliest deadline.
+Each is a task, such as goal 3 (bring cup table). With AT-ONCE, a number, work on at most so many
+goals at the same time; others wait, even if they are more urgent. Return the number of goals
+achieved. Signals MISUSE if a plan already works on the agenda for the robot."
+  (unless (typep at-once '(or null (integer 1)))
+    (reject-argument 'work-on-agenda 'at-once at-once "a positive integer, or NIL for no limit"))
   (work-on-goals (rpl-robot) nil at-once))
 
 (defun process-goal-agenda ()
