@@ -200,6 +200,10 @@
     (is-true (has-words-p (joined (type-batch (format nil "help ~A" name))) name "rate")
              "~A" name)))
 
+(test help.knows-the-names-of-packages-that-are-used
+  (is-true (has-words-p (joined (type-batch "help install-goal")) "INSTALL-GOAL" "priority"))
+  (is-true (has-words-p (joined (type-batch "apropos agenda")) "DUMP-AGENDA" "WORK-ON-AGENDA")))
+
 ;;; What is pasted from a page.
 
 (test pasted.prompts-are-passed-over

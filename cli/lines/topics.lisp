@@ -125,9 +125,13 @@
                      :test #'string= :from-end t))
 
 (defun documented-names ()
-  "Return a sorted list of the documented names of simulator, worlds and user, except parameters."
+  "Return a sorted list of the documented names of simulator, worlds and user, and of the packages
+that the user's package uses, except parameters."
   (let ((names '()))
-    (dolist (package (remove-if-not #'find-package '(:ars :nisp :ars-worlds :ars-fiveam)))
+    (dolist (package (append (remove-if-not #'find-package
+                                            '(:ars :nisp :ars-rap :ars-worlds :ars-fiveam))
+                             (remove (find-package :common-lisp)
+                                     (package-use-list (user-package)))))
       (do-external-symbols (symbol package) (pushnew symbol names :test #'string=)))
     (do-symbols (symbol (user-package))
       (when (eq (user-package) (symbol-package symbol)) (pushnew symbol names :test #'string=)))
