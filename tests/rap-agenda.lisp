@@ -209,7 +209,7 @@
     (run-ticks 2)
     (is (equal '(:suspended :active) (goal-states)))
     (is (null (agenda-goals '(:waiting))))
-    (is (search "suspended" (with-output-to-string (stream) (dump-agenda stream))))
+    (is (search "suspended" (with-output-to-string (stream) (dump-agenda :stream stream))))
     (run-ticks 3)
     (is (equal '(:active :achieved) (goal-states)))))
 
@@ -245,6 +245,21 @@
 
 ;;; Copies.
 
+(test rap-agenda.goals-of-a-run-that-was-saved-without-its-plans-wait-again
+  (ars-magna.tests::with-temporary-file (file)
+    (in-rap-run
+      (install-goal '(rap-work a 40))
+      (begin-plan 'work-on-agenda)
+      (run-ticks 10)
+      (handler-bind ((error (lambda (condition)
+                              (invoke-restart (find-restart 'save-without condition)))))
+        (save-simulation file)))
+    (let ((*rap-notes* '()))
+      (with-loaded-simulation (file)
+        (is (equal '(:active) (goal-states)))
+        (is (= 1 (process-goal-agenda)))
+        (is (equal '((50 a)) *rap-notes*))))))
+
 (test rap-agenda.changes-of-goals-are-exact-in-forks-and-rewinds
   (with-simulation ((rapper rapper-2) :seed 1 :keep t)
     (let ((*rap-notes* '()))
@@ -263,21 +278,6 @@
         (run-ticks 3)
         (let* ((goals (mapcar #'first main-agenda*))
                (states (list (goal-states) (state-digest)))
-(test rap-agenda.goals-of-a-run-that-was-saved-without-its-plans-wait-again
-  (ars-magna.tests::with-temporary-file (file)
-    (in-rap-run
-      (install-goal '(rap-work a 40))
-      (begin-plan 'work-on-agenda)
-      (run-ticks 10)
-      (handler-bind ((error (lambda (condition)
-                              (invoke-restart (find-restart 'save-without condition)))))
-        (save-simulation file)))
-    (let ((*rap-notes* '()))
-      (with-loaded-simulation (file)
-        (is (equal '(:active) (goal-states)))
-        (is (= 1 (process-goal-agenda)))
-        (is (equal '((50 a)) *rap-notes*))))))
-
                (ahead (with-fork () (go-on) (list (goal-states) (mapcar #'first main-memory*)))))
           (is (equal states (list (goal-states) (state-digest))))
           (go-on)

@@ -199,7 +199,7 @@ goals that have ended, the last 100 are there."
           collect (list :number number :goal goal :priority priority :deadline deadline
                         :state shown :note note :robot robot)))
 
-(defun dump-agenda (&optional (stream *standard-output*))
+(defun dump-agenda (&key (stream *standard-output*))
   "Write the goals of the current run to STREAM. Return nothing. (From RAP.)"
   (dolist (goal (agenda-goals))
     (destructuring-bind (&key number goal priority deadline state note robot) goal

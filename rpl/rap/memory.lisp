@@ -158,8 +158,9 @@ run. Return how many there were. Signals WRONG-ARGUMENT. (From RAP.)"
   "Add FACT, and delete the facts that differ from it in the last element only: after (memory-set
 '(at truck depot)), the truck is nowhere else. Return FACT. Signals WRONG-ARGUMENT."
   (check-fact 'memory-set fact)
+  (unless (rest fact)
+    (reject-argument 'memory-set 'fact fact "a list with a name and one or several other elements"))
   (let* ((kept (copied-value fact)) (pattern (append (butlast kept) (list '?))))
-    (check-pattern 'memory-set pattern)
     (update-run-variable 'main-memory*
                          (lambda (entries)
                            (entries-with kept (entries-without pattern entries) 'memory-set))

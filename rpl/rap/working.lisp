@@ -120,13 +120,13 @@ their priorities. TAKEN is a list of conses (number . priority)."
       (unless (or (goals-for robot only :waiting) (goals-for robot only :active))
         (return nil))
       (wait-for changed :timeout (next-deadline (goals-for robot only :waiting))))))
+
 (defun free-abandoned-goals (robot)
   "Let the active goals for ROBOT that no task works for wait again, as after a run was saved
 without its plans."
   (let ((tasks (remove-if-not #'goal-task-p (all-tasks (task-runner (current-task))))))
     (loop for (number) in (goals-for robot nil :active)
           unless (find number tasks :key #'task-index) do (set-goal-state number :waiting))))
-
 
 (defun join-workers (robot only)
   "Note that the calling task works on the agenda for ROBOT, or on the goal ONLY. Return its fluent.
@@ -139,8 +139,8 @@ Signals MISUSE if another task works on the agenda for ROBOT."
                                       (goal-workers agent))))
       (reject-use "A plan of ~A already works on the agenda. It works on goals that are installed ~
                    meanwhile, too: call INSTALL-GOAL only."
-    (unless only (free-abandoned-goals robot))
                   robot))
+    (unless only (free-abandoned-goals robot))
     (push (list robot only fluent) (agent-note (task-agent (current-task)) 'goal-workers))
     fluent))
 
