@@ -405,7 +405,7 @@
                  (:file "run-variables-mistakes") (:file "run-variables-random")
                  (:file "recognising-places")
                  (:file "rewinding-words") (:file "rewinding-handles")
-                 (:file "rewinding-values")
+                 (:file "rewinding-values") (:file "rewinding-definitions")
                  (:file "forking-oracle") (:file "forking") (:file "forking-fluents")
                  (:file "forking-values") (:file "forking-unforkable") (:file "forking-uses")
                  (:file "forking-plans") (:file "forking-live") (:file "forking-borders")

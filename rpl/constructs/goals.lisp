@@ -82,7 +82,7 @@
 (defmethod documentation ((goal goal) (kind (eql t)))
   (goal-documentation goal))
 
-(define-registry goal "goal" :object-p goal-p)
+(define-registry goal "goal" :object-p goal-p :plans t)
 
 ;;; Choosing.
 

@@ -21,7 +21,8 @@
     (format stream "policy ~:[without a name~;~:*~A~] ~:A" (policy-name policy)
             (policy-lambda-list policy))))
 
-(define-registry policy "policy" :object-p policy-p :by-symbol t :lister all-policies)
+(define-registry policy "policy" :object-p policy-p :by-symbol t :plans t
+  :lister all-policies)
 
 (addition policy-failure)
 (define-condition policy-failure (plan-failure)

@@ -12,7 +12,8 @@
   (query nil list "the query from which they follow")
   (documentation nil (or null string)))
 
-(define-registry memory-rule "memory rule" :object-p memory-rule-p :by-symbol t :internal t)
+(define-registry memory-rule "memory rule" :object-p memory-rule-p :by-symbol t :plans t
+  :internal t)
 
 (defparameter *rule-depth-limit* 1000 "How deeply rules may use each other.")
 

@@ -29,8 +29,8 @@ or (interp-lambda parameters form...)" :writable :addition)
   (stub nil (or null function) "the Lisp function with the name of the procedure, which signals
 MISUSE" :writable))
 
-(define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :synonyms ("PLAN")
-  :finder registered-procedure :lister registered-procedures :internal t)
+(define-registry procedure "plan procedure" :object-p procedure-p :by-symbol t :plans t
+  :synonyms ("PLAN") :finder registered-procedure :lister registered-procedures :internal t)
 
 (defvar *procedure-cells* (make-hash-table :test 'eq :synchronized t)
   "The cells of all names that plans define or call.")

@@ -5,8 +5,8 @@
 (export '(registry define-registry register *definition-listener* lookup-entry
           defined-in-this-file-p users-entry-p names-to-suggest defined-names all-definitions
           definition-to-replace variable-in-use-p users-entries-named undo-definition
-          redo-definition
-          entry-of restore-entry remove-entry forget-value entry-variable))
+          redo-definition entry-of restore-entry remove-entry forget-value entry-variable
+          *definition-changes* registries-of-plans))
 
 ;;; There is one registry for each kind of definition. Names compare without their package; the
 ;;; newest definition of a name counts. A registry by symbol, as for functions, first looks for the
@@ -25,18 +25,21 @@
   (variable nil symbol "the variable whose value is the object, or is computed from it; or NIL")
   (digest nil (or null integer) "the digest of the form of the entry's definition, or NIL" :export)
   (head '() list "the operator and name in the form of the definition, a list")
-  (documentation nil (or null string) "the docstring of the definition, or NIL"))
+  (documentation nil (or null string) "the docstring of the definition, or NIL")
+  (changed 0 fixnum "*DEFINITION-CHANGES* at the last change of the definition, or 0"
+           :writable :export))
 
 (define-record (registry (:constructor %make-registry (kind text)))
   "All definitions of one KIND. Messages name the kind with TEXT."
   (kind nil symbol)
-  (text "" string)
+  (text "" string "what messages call a definition of the kind" :export)
   (entries '() list "the entries of the registry's definitions, in order" :writable :export)
   (objects '() list "the objects in REGISTRY, in order; do not modify the list" :writable :export)
   (by-symbol-p nil boolean "a definition replaces another only if both have the same symbol as the
 name" :writable)
   (fixed-p nil boolean "users cannot undefine any of the definitions" :writable)
   (sealed-p nil boolean "users cannot undefine the simulator's definitions" :writable)
+  (plans-p nil boolean "plans use the definitions by name" :writable)
   (synonyms '() list "other names of the kind for UNDEFINE" :writable)
   (aliases (constantly '()) function "the function that returns the other names of an object,
 strings and symbols" :writable))
@@ -47,8 +50,10 @@ strings and symbols" :writable))
 
 (defvar *registries* '() "All registries, in order of definition.")
 (defvar *registries-lock* (make-lock "registries"))
+(defvar *definition-changes* 0
+  "How many times a definition has been replaced by one with a different form.")
 
-(defun ensure-registry (kind text &key by-symbol fixed sealed synonyms aliases)
+(defun ensure-registry (kind text &key by-symbol fixed sealed plans synonyms aliases)
   (let ((registry (or (find kind *registries* :key #'registry-kind)
                       (let ((new (%make-registry kind text)))
                         (setf *registries* (append *registries* (list new)))
@@ -56,6 +61,7 @@ strings and symbols" :writable))
     (setf (registry-by-symbol-p registry) (and by-symbol t)
           (registry-fixed-p registry) (and fixed t)
           (registry-sealed-p registry) (and sealed t)
+          (registry-plans-p registry) (and plans t)
           (registry-synonyms registry) synonyms
           (registry-aliases registry) (or aliases (constantly '())))
     registry))
@@ -91,6 +97,10 @@ strings and symbols" :writable))
 
 (defun users-registries ()
   (remove-if #'registry-fixed-p *registries*))
+
+(defun registries-of-plans ()
+  "Return the registries of definitions that plans use by name."
+  (remove-if-not #'registry-plans-p *registries*))
 
 (defun users-entries-named (name)
   "Return the entries of users' definitions with the name NAME, a symbol, in all registries."
@@ -204,6 +214,10 @@ NAME is a symbol of Common Lisp or of the simulator."
 variable, if any, to VALUE. Return true, or change nothing if another thread has replaced OLD."
   (with-lock (*registries-lock*)
     (when (eq old (entry-to-replace (entry-name new) registry))
+      (when old
+        (setf (entry-changed new) (if (eql (entry-digest old) (entry-digest new))
+                                      (entry-changed old)
+                                      (incf *definition-changes*))))
       (set-entries registry (entries-including new old before registry))
       (when (entry-variable new) (setf (global-value (entry-variable new)) value))
       t)))
@@ -311,7 +325,8 @@ was not."
 
 ;;; Making registries.
 
-(defmacro define-registry (kind text &key object-p by-symbol fixed sealed synonyms aliases internal
+(defmacro define-registry (kind text &key object-p by-symbol fixed sealed plans synonyms aliases
+                                       internal
                                        (finder (symbolicate 'find- kind))
                                        (lister (symbolicate 'all- kind 's)))
   "Define the registry of KIND, a symbol. The registry of KICKER is in the variable *KICKERS*, and
@@ -322,7 +337,7 @@ OBJECT-P is true can be passed in place of names. The other arguments are slots 
     `(progn
        (defparameter ,variable
          (ensure-registry ',kind ,text :by-symbol ,by-symbol :fixed ,fixed :sealed ,sealed
-                                       :synonyms ',synonyms :aliases ,aliases)
+                                       :plans ,plans :synonyms ',synonyms :aliases ,aliases)
          ,(format nil "The registry with the definition of each ~A." text))
        ,@(unless internal `((addition ,finder ,lister)))
        (defun ,finder (name &optional (errorp t))

@@ -237,3 +237,27 @@ left the run."
 (defun definition-difference-texts (definitions)
   (let ((others (current-definitions definitions)))
     (remove nil (mapcar (lambda (definition) (difference-text definition others)) definitions))))
+
+;;; Which have changed while a run goes on. A run of plans may use any plan, as plans can compute
+;;; the names of plans that they call. Maps and robots in a run are not redefined.
+
+(defun changed-definition-texts (registry names number)
+  "Return a text for each definition in REGISTRY that has changed after the change NUMBER of
+definitions. If NAMES is not T, return only the texts of definitions with NAMES."
+  (loop for entry in (registry-entries registry)
+        when (and (< number (entry-changed entry))
+                  (or (eq t names) (member (entry-name entry) names :test #'same-name-p)))
+          collect (format nil "~A ~(~A~)" (registry-text registry) (entry-name entry))))
+
+(defun definitions-changed-since (number simulation)
+  "Return two lists of texts about definitions that SIMULATION may use and that have changed after
+the change NUMBER of definitions: those that plans use by name, and others."
+  (if (= number *definition-changes*)
+      (values '() '())
+      (values (and (simulation-participants simulation)
+                   (loop for registry in (registries-of-plans)
+                         append (changed-definition-texts registry t number)))
+              (loop for (kind . registry) in *definition-kinds*
+                    unless (member kind '(:map :robot :map-clause))
+                      append (changed-definition-texts
+                              registry (definition-names-in-use kind simulation) number)))))

@@ -26,11 +26,13 @@ name, also externalized. ASKER is a note of who made the act, or NIL."
   (arguments '() :type list :read-only t)
   (asker nil :read-only t))
 
-(defstruct (fork-record (:constructor make-fork-record (fork tick acts)) (:copier nil))
-  "A fork kept for rewinding. FORK was made at the end of TICK, after ACTS, the newest first."
+(defstruct (fork-record (:constructor make-fork-record (fork tick acts changes)) (:copier nil))
+  "A fork kept for rewinding. FORK was made at the end of TICK, after ACTS, the newest first, and
+after CHANGES changes of definitions."
   (tick 0 :type fixnum :read-only t)
   (fork nil :type simulation :read-only t)
-  (acts '() :type list :read-only t))
+  (acts '() :type list :read-only t)
+  (changes 0 :type fixnum :read-only t))
 
 (defstruct (run-past (:conc-name past-)
                      (:constructor make-past (limit &key forks acts cost (count (length acts))))
@@ -214,9 +216,10 @@ participant is busy, try again at the end of the next tick."
   (discard-past-if-full simulation past)
   (let* ((began (or (past-wanted past) (seconds-now)))
          (tick (simulation-tick simulation))
+         (changes *definition-changes*)
          (fork (make-fork-to-keep simulation past)))
     (when (simulation-p fork)
-      (push (make-fork-record fork tick (past-acts past)) (past-forks past))
+      (push (make-fork-record fork tick (past-acts past) changes) (past-forks past))
       (loop with room = (most-forks simulation past)
             while (> (length (past-forks past)) room)
             do (removef (past-forks past) (least-needed-fork (past-forks past)))))

@@ -85,6 +85,30 @@ first, of requests made but not performed by then."
                                         state outside its run."
                                    tick))))
 
+(defun repetition-text (since tick)
+  "Return a sentence about the state at TICK, which was reached from that at the tick SINCE with
+definitions that have changed."
+  (if (= since tick)
+      (format nil "The state at tick ~D is as it was." tick)
+      (format nil "The run was repeated from tick ~D to tick ~D with what is defined now, so the ~
+                   state at tick ~:*~D may differ from what it was." since tick)))
+
+(defun warn-of-redefinitions (kept run)
+  "Queue a warning if definitions that RUN may use have changed since the fork KEPT was made, which
+was advanced to the current tick of RUN."
+  (multiple-value-bind (plans others) (definitions-changed-since (fork-record-changes kept) run)
+    (let ((since (fork-record-tick kept)) (tick (simulation-tick run))
+          (*message-queue* (simulation-messages run)))
+      (when (if (< since tick)
+                (or plans others)
+                (and plans (some #'participant-unfinished (simulation-participants run))))
+        (queue-notable-warning
+         (format nil "Redefined since tick ~D: ~{~A~^, ~}. ~A~@[ ~A~]"
+                 since (append plans others) (repetition-text since tick)
+                 (and plans (format nil "Calls of plans in progress at tick ~D keep the old ~
+                                         definition; later calls run the new one from its ~
+                                         beginning." since))))))))
+
 ;; Otherwise such a robot would just stop.
 (defun warn-of-ended-programs (run)
   "Queue a warning about commands in progress in RUN that continuations have issued."
@@ -104,10 +128,16 @@ waiting; and the tick at which a plan diverged while the past was repeated, or N
   (let* ((kept (first (past-forks past)))
          (run (await-fork (fork-record-fork kept) nil '()))
          (acts (reverse (ldiff (append asked (past-acts past)) (fork-record-acts kept))))
+         (changes *definition-changes*)
          (done-p nil))
     (bind-joining-robots run (append asked acts))
     (unwind-protect
          (let ((diverged (call-in-simulation run (lambda () (repeat-acts run acts tick)))))
+           ;; From here on, the run has gone by the definitions of now since the tick of KEPT.
+           (push (make-fork-record (fork-record-fork kept) (fork-record-tick kept)
+                                   (fork-record-acts kept) changes)
+                 (past-forks past))
+           (removef (past-forks past) kept)
            (setf (simulation-past run) past
                  done-p t)
            (values run diverged))
@@ -257,11 +287,13 @@ signal MISUSE."
         (check-rewind-distance ticks simulation)
         (let ((tick (- (simulation-tick simulation) ticks)))
           (multiple-value-call #'values tick (past-until tick simulation))))
-    (multiple-value-bind (run diverged) (repeat-past past asked tick)
-      (replace-run run simulation)
-      (when diverged (warn-of-divergence run diverged))
-      (warn-of-ended-programs run)
-      run)))
+    (let ((kept (first (past-forks past))))
+      (multiple-value-bind (run diverged) (repeat-past past asked tick)
+        (replace-run run simulation)
+        (when diverged (warn-of-divergence run diverged))
+        (warn-of-redefinitions kept run)
+        (warn-of-ended-programs run)
+        run))))
 
 (addition rewind)
 (defun rewind (ticks &optional (simulation (current-simulation)))
@@ -278,6 +310,8 @@ robots are defined as at that tick: what DEFROBOT and UNDEFINE have done since i
   that never call their continuations. So a program such as ROBOT-GO-TO issues no further commands.
 - A call of RUN-PLAN that waits in another thread returns :STOPPED.
 - Messages are kept, and so are variables that programs have set themselves.
+- The run may be repeated from an earlier tick, with what is defined now. A warning names plans and
+  other definitions that have changed since then: the state may differ from what it was.
 - RUN-TICKS, RUN-UNTIL and CALL-IN-FORK use the successor of a fork that was rewound. The digest of
   such a fork remains that of its last state.
 Signals WRONG-ARGUMENT, which names the largest possible number of ticks. Signals MISUSE inside
