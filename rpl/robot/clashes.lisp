@@ -158,10 +158,14 @@ around TASK or NIL, do not count."
               (not (reacting-to-events-p newer common))))))
 
 (defun action-text (action)
-  (let ((task (action-task action)))
-    (format nil "rpl-~(~A~) of ~@[~A in ~]the plan ~A"
+  "Return the text of ACTION with its task, the named task around that, and the plan."
+  (let* ((task (action-task action))
+         (parts (butlast (lineage task)))
+         (named (find-if #'task-name (rest parts))))
+    (format nil "rpl-~(~A~) of ~@[~A in ~]~@[~A in ~]the plan ~A"
             (action-name action)
-            (and (task-parent task) (task-label task))
+            (and parts (task-label task))
+            (and named (not (task-name task)) (task-label named))
             (task-label (task-top task)))))
 
 (defun harmless-action-p (action)
