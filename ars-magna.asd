@@ -165,7 +165,7 @@
     :components ((:file "rows") (:file "lines") (:file "series") (:file "directory")
                  (:file "description") (:file "results") (:file "merging")))
    (:module "src/experiment/running" :serial t
-    :components ((:file "workers") (:file "repeatable") (:file "running")))
+    :components ((:file "workers") (:file "repeatable") (:file "renewing") (:file "running")))
    (:module "src/experiment/report" :serial t
     :components ((:file "estimates") (:file "text-table") (:file "report")))
    (:module "src/experiment/comparison" :serial t

@@ -262,6 +262,51 @@
   (let ((text (with-output-to-string (*standard-output*) (cli::write-worlds))))
     (is (< (search "tiny " text) (search "Worlds of testbeds" text) (search "tileworld " text)))))
 
+;;; Agents whose code has changed.
+
+(defun define-race-agent (metres)
+  (eval `(defun ars-test-race::mine () (ars-test-race::run-for ,metres))))
+
+(defun race-scores (directory &optional (stream nil))
+  (let ((results (experiment:run-testbed 'ars-test-race:race
+                                         :agents '(ars-test-race::mine ars-test-race:slow) :seeds 2
+                                         :directory directory :stream stream)))
+    (loop for sample in (experiment:results-samples results)
+          collect (coerce (experiment:sample-measure results sample "metres") 'list))))
+
+(test run-testbed.plays-games-again-only-of-agents-that-have-changed
+  (with-race ((:score ars-test-race:metres))
+    (with-directories (directory)
+      (flet ((lines (name agent)
+               (remove-if-not (lambda (line) (search agent line))
+                              (lines-of (base:file-text (merge-pathnames name directory)))))
+             (old-p (name) (uiop:file-exists-p (merge-pathnames name directory))))
+        (define-race-agent 2)
+        (is (equal '((5 5) (4 4)) (race-scores directory)))
+        (let ((slow (lines "machine.csv" "slow"))
+              (table (base:file-text (merge-pathnames "rows.csv" directory))))
+          (define-race-agent 3)
+          (let ((said (with-output-to-string (out)
+                        (is (equal '((6 6) (4 4)) (race-scores directory out))))))
+            (is (search "Code has changed since the trials of agent=mine: " said))
+            (is (search "old-1/" said)))
+          (is (equal slow (lines "machine.csv" "slow")))
+          (is (= 2 (length (lines "machine.csv" "mine"))))
+          (is (string= table (base:file-text (merge-pathnames "old-1/rows.csv" directory))))
+          (is (string= "" (with-output-to-string (out) (race-scores directory out))))
+          (is (not (old-p "old-2/rows.csv"))))))))
+
+(test run-testbed.keeps-a-damaged-table-as-it-is
+  (with-race ((:score ars-test-race:metres))
+    (with-directories (directory)
+      (define-race-agent 2)
+      (race-scores directory)
+      (change-line (merge-pathnames "rows.csv" directory) 2
+                   (lambda (line) (with-cell line 1 "123")))
+      (let ((damaged (base:file-text (merge-pathnames "rows.csv" directory))))
+        (signals experiment:damaged-table (race-scores directory))
+        (is (string= damaged (base:file-text (merge-pathnames "rows.csv" directory))))))))
+
 ;;; Agents that cannot play.
 
 (defun race-complaint (&rest arguments)

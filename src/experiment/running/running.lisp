@@ -113,6 +113,7 @@ are the fingerprint parts of all conditions. Signals MISUSE for rows with other 
 (defun run-in-directory (experiment directory trials until shard workers time-limit stream)
   (let ((parts (prepare-experiment experiment)))
     (when (existing-path (rows-file directory)) (check-not-refused directory))
+    (when *renew-changed-rows-p* (renew-changed-rows experiment parts directory stream))
     (multiple-value-bind (presence samples) (find-existing-rows experiment parts directory)
       (check-rows-repeatable experiment samples *seconds-for-checks*)
       (warn-if-damaged directory)

@@ -190,12 +190,17 @@ PARTS are lists of the parts of its conditions' fingerprints, in order."
         unless (string= "" line) collect (string-trim " " line)))
 
 (defun changed-parts (before now)
-  "Return the names of the parts that are in only one of BEFORE and NOW, two lists of lines."
-  (flet ((without-number (line) (subseq line 0 (position #\Space line :from-end t))))
-    (remove-duplicates (mapcar #'without-number
-                               (append (set-difference before now :test #'string=)
-                                       (set-difference now before :test #'string=)))
-                       :test #'string= :from-end t)))
+  "Return the names of the parts that are in only one of BEFORE and NOW, two lists of lines. If no
+part of that name is in the other list, a note says so."
+  (flet ((names (lines)
+           (loop for line in lines collect (subseq line 0 (position #\Space line :from-end t)))))
+    (let ((old (names (set-difference before now :test #'string=)))
+          (new (names (set-difference now before :test #'string=))))
+      (append (intersection old new :test #'string=)
+              (loop for name in (set-difference new old :test #'string=)
+                    collect (format nil "~A (new)" name))
+              (loop for name in (set-difference old new :test #'string=)
+                    collect (format nil "~A (no longer used)" name))))))
 
 (defun recorded-conditions (directory)
   (loop for line in (description-lines directory)

@@ -68,8 +68,10 @@ another value then: tables would say what the game was not."
 RUN-EXPERIMENT does: AGENT is a factor, and the score is the first measure. AGENTS are names of
 plans or functions, or of agents of the testbed; by default all of these. KNOBS are lists (knob
 value). If TUNING is true, the seeds are those to write agents with, else those to test them.
-WORKERS, DIRECTORY, TIME-LIMIT and STREAM are as for RUN-EXPERIMENT. Signals UNKNOWN-NAME,
-WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
+WORKERS, DIRECTORY, TIME-LIMIT and STREAM are as for RUN-EXPERIMENT. But if an agent has changed
+since its games in DIRECTORY, these games are played again, and a copy of the old table is kept in a
+directory old-N there. Signals UNKNOWN-NAME, WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT and
+DEFEXPERIMENT."
   (let ((testbed (find-testbed name)))
     (check-testbed-arguments agents knobs seeds)
     (run-experiment-object
@@ -84,9 +86,10 @@ WRONG-ARGUMENT, and the errors of RUN-EXPERIMENT and DEFEXPERIMENT."
   "Register EXPERIMENT, so that failed trials can be listed, and run it. Return the results."
   (register *experiments* (experiment-name experiment) experiment :generated t)
   ;; Not by its name: other threads may run the same testbed.
-  (apply #'run-experiment experiment
-         :trials seeds :workers workers :directory directory :stream stream
-         (and time-limit (list :time-limit time-limit))))
+  (let ((*renew-changed-rows-p* t))
+    (apply #'run-experiment experiment
+           :trials seeds :workers workers :directory directory :stream stream
+           (and time-limit (list :time-limit time-limit)))))
 
 (defun broken-trials (sample)
   "Return the numbers of the trials of SAMPLE that had an error or took too long."
