@@ -204,13 +204,14 @@
                  (:file "plans-searching") (:file "recognising") (:file "plans-recognising")
                  (:file "going") (:file "errand") (:file "experiments") (:file "choosing")))
    (:module "worlds/testbeds/tileworld" :serial t
-    :components ((:file "package") (:file "holes") (:file "cameras") (:file "foresight")))
+    :components ((:file "package") (:file "holes") (:file "agents") (:file "cameras")
+                 (:file "foresight")))
    (:module "worlds/testbeds/tileworld-tiles" :serial t
     :components ((:file "package") (:file "tiles") (:file "agents") (:file "camera")))
    (:module "worlds/testbeds/tileworld-wind" :serial t
     :components ((:file "package") (:file "wind") (:file "agents")))
    (:module "worlds/testbeds/pursuit" :serial t
-    :components ((:file "package") (:file "pursuit") (:file "modelling")))
+    :components ((:file "package") (:file "pursuit") (:file "playing") (:file "modelling")))
    (:module "worlds/testbeds/truckworld" :serial t
     :components ((:file "package") (:file "country") (:file "events") (:file "actions")
                  (:file "work") (:file "agents") (:file "raps") (:file "testbed")))))

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.tests)
 
-;;; The rules of worlds/testbeds/pursuit/pursuit.lisp, played on cells alone: pairs (x . y), from 1
+;;; The rules of worlds/testbeds/pursuit, played on cells alone: pairs (x . y), from 1
 ;;; to 20. Cells and moves are lists, those of the predators, then that of the prey. Moves are
 ;;; pairs, too. Probabilities are rational, so that equal payoffs are equal.
 

@@ -194,3 +194,24 @@
       (is (equal '(3 2 1) (nreverse (ars-testbeds.trucks:cargo))))
       (is (equal '(1 2 3) (robot:storage-bin-contents bin)))
       (setf (robot::location-contents bin) '()))))
+
+;;; Arguments that make no sense.
+
+(defun check-wrong-arguments (package calls)
+  "Check that CALLS, lists (name argument...) of functions in PACKAGE, signal WRONG-ARGUMENT."
+  (loop for (name . arguments) in calls
+        do (signals base:wrong-argument (apply (find-symbol (string name) package) arguments)
+             "~A ~S" name arguments)))
+
+(test testbeds.functions-for-agents-refuse-wrong-arguments
+  (run:with-simulation ('ars-testbeds:tiler)
+    (check-wrong-arguments :ars-testbeds
+                           '((hole-score nil) (steps-to 3) (step-towards nil list)
+                             (spend-steps nil list) (spend-steps -1 list)))
+    (check-wrong-arguments :ars-testbeds.tiles
+                           '((hole-id nil) (hole-cells 3) (hole-worth (1)) (utility nil)
+                             (way-to-fill nil) (plan-push nil (1 100 0 900)) (push-to :up list)
+                             (spend-steps :few list)))
+    (check-wrong-arguments :ars-testbeds.wind
+                           '((tile-thing nil) (tile-target 0) (tile-in-place-p nil) (step-to 3 list)
+                             (grasp-tile nil list)))))

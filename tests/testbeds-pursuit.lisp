@@ -104,3 +104,17 @@
 
 (test pursuit.looks-ahead-by-forks
   (is (every (lambda (time) (< time 500)) (pursuit-scores 'look-ahead :seeds 2))))
+
+(test pursuit.functions-for-agents-refuse-wrong-arguments
+  (with-pursuit ('still :knobs '((time-limit* 1)))
+    (let ((cells (ars-pursuit:current-cells)) (prey ars-pursuit:prey))
+      (check-wrong-arguments :ars-pursuit
+                             `((next-cell nil 1) (next-cell 400 1) (next-cell 3 9)
+                               (distance-to nil nil) (distance-to 3 -1) (quadrants-held nil)
+                               (quadrants-held #(1 2)) (hunt nil) (hunt 3) (captured-p 3)
+                               (cells-after ,cells (1 1)) (cells-after nil nil)
+                               (cells-after ,cells (0 1 2 3 5)) (draw-move ,prey nil)
+                               (draw-move 3 (1 0)) (draw-move ,prey (0 0 0 0 0))
+                               (modelled-moves ,cells nil) (modelled-moves nil 1)))
+      (is (= 4 (ars-pursuit:next-cell 3 1)))
+      (is (equalp cells (ars-pursuit:cells-after cells '(0 0 0 0 0)))))))

@@ -10,8 +10,7 @@
 ;;; equally likely; at level N, that they choose at level N - 1. TIES* decides between equally
 ;;; good moves. The prey is always expected to move at random. A mix is five probabilities of moves.
 
-(defun quadrants-held (cells)
-  "Return how many quadrants around the prey hold a predator. The diagonals bound them."
+(defun %quadrants-held (cells)
   (declare (type cells cells) (optimize speed))
   (let ((last (1- (length cells))) (held 0))
     (declare (type (integer 0 15) held))
@@ -21,16 +20,21 @@
           (when (or both (> columns rows)) (setf held (logior held x-side)))
           (when (or both (< columns rows)) (setf held (logior held y-side))))))))
 
+(defun quadrants-held (cells)
+  "Return how many quadrants around the prey hold a predator. The diagonals bound them."
+  (check-cells 'quadrants-held cells)
+  (%quadrants-held cells))
+
 (defun add-payoffs (table at share weight cells after)
   "Add SHARE of the payoff of each predator to TABLE, from the index AT on. A quadrant adds WEIGHT."
   (declare (type cells cells after) (type reals table) (type (integer 0 93750) at)
            (type double-float share weight) (optimize speed))
   (let* ((last (1- (length cells)))
-         (held (* weight (the (integer 0 4) (quadrants-held after)))))
+         (held (* weight (the (integer 0 4) (%quadrants-held after)))))
     (dotimes (i last)
       (incf (aref table (+ at i))
-            (* share (+ held (- (distance-to (aref cells i) (aref cells last))
-                                (distance-to (aref after i) (aref after last)))))))))
+            (* share (+ held (- (%distance-to (aref cells i) (aref cells last))
+                                (%distance-to (aref after i) (aref after last)))))))))
 
 (defun payoffs (cells)
   "Return the expected payoffs of the predators for all their joint moves. That of predator I is at
@@ -45,9 +49,9 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
     (dotimes (joint joint-moves table)
       (loop for i below count
             for moves = joint then (floor moves 5)
-            do (setf (aref goals i) (next-cell (aref cells i) (mod moves 5))))
+            do (setf (aref goals i) (%next-cell (aref cells i) (mod moves 5))))
       (loop for move from first-move to 4
-            do (setf (aref goals count) (next-cell (aref cells count) move))
+            do (setf (aref goals count) (%next-cell (aref cells count) move))
                (move-all cells goals after)
                (add-payoffs table (* count joint) share weight cells after)))))
 
@@ -99,6 +103,9 @@ the index I + COUNT x J, where J has the moves as digits to the base of 5."
 
 (defun modelled-moves (cells level)
   "Return a vector of the mixes that the predators choose at LEVEL, by number."
+  (check-cells 'modelled-moves cells)
+  (unless (typep level '(integer 0 100))
+    (reject-argument 'modelled-moves 'level level "a level from 0 to 100"))
   (let ((key (list cells level prey-stays* metric* diagonal* quadrant-weight* ties*))
         (last *last-mixes*))
     (if (equalp key (first last))

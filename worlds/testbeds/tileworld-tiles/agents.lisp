@@ -72,6 +72,9 @@ TILE into one of the cells GOALS, or NIL if there is none."
 (defun plan-push (tile hole)
   "Return the shortest list of directions in which the agent must go to push TILE into a cell of
 HOLE, or NIL if there is none."
+  (unless (thing-p tile)
+    (reject-argument 'plan-push 'tile tile "a tile, a thing, as TILES returns them"))
+  (check-hole 'plan-push hole)
   (plan-way (cell-code tile)
             (mapcar #'cell-code (hole-cells hole))
             (solid-bits (mapcar #'cell-code (remove tile (append *tiles* *obstacles*))))
@@ -102,6 +105,7 @@ HOLE, or NIL if there is none."
 (defun utility (hole)
   "Return the likely value of HOLE, as published: its score, by the distance of the agent from it
 plus twice the distances from it of the tiles that it needs; 0 if there are not enough tiles."
+  (check-hole 'utility hole)
   (let* ((count (length (hole-cells hole))) (tiles (nearest-tiles hole count)))
     (if (< (length tiles) count)
         0
@@ -112,6 +116,7 @@ plus twice the distances from it of the tiles that it needs; 0 if there are not 
 (defun way-to-fill (hole)
   "Return the shortest way to push one of the three tiles nearest to HOLE into it, a list of
 directions, and then the tile; NIL if there is none."
+  (check-hole 'way-to-fill hole)
   (let ((best nil) (best-tile nil))
     (dolist (tile (nearest-tiles hole 3))
       (let ((way (plan-push tile hole)))

@@ -39,14 +39,29 @@
 (defun holes () "Return a new list of the open holes, the newest first." (copy-list *holes*))
 (defun obstacles () "Return a new list of the cells of obstacles, things." (copy-list *obstacles*))
 (defun tiles () "Return a new list of the tiles, things, the newest first." (copy-list *tiles*))
-(defun hole-id (hole) "Return the number of HOLE; a newer hole has a larger one." (first hole))
-(defun hole-cells (hole) "Return a new list of the cells of HOLE to fill, things."
+
+(defun check-hole (operator hole)
+  "Signal WRONG-ARGUMENT, about the function OPERATOR, unless HOLE is a hole, open or not."
+  (unless (typep hole '(cons integer (cons real (cons integer (cons integer list)))))
+    (reject-argument operator 'hole hole
+                     "a hole, as HOLES returns them; (find-hole id) is NIL once it is closed")))
+
+(defun hole-id (hole)
+  "Return the number of HOLE; a newer hole has a larger one."
+  (check-hole 'hole-id hole)
+  (first hole))
+
+(defun hole-cells (hole)
+  "Return a new list of the cells of HOLE to fill, things."
+  (check-hole 'hole-cells hole)
   (copy-list (cddddr hole)))
+
 (defun find-hole (id) "Return the open hole ID, or NIL." (assoc id *holes*))
 (defun game-over-p () "True if the game has ended." (<= (* 2 steps*) (simulation-tick)))
 
 (defun hole-worth (hole)
   "Return what HOLE scores if it is filled now."
+  (check-hole 'hole-worth hole)
   (destructuring-bind (score begin end &rest cells) (rest hole)
     (declare (ignore cells))
     (if soft-bounds*
@@ -188,6 +203,8 @@
 
 (defun spend-steps (steps then)
   "Let the agent spend the time of so many STEPS without moving; then call the function THEN."
+  (unless (typep steps '(real 0))
+    (reject-argument 'spend-steps 'steps steps "how many steps, a number that is not negative"))
   (if (zerop steps)
       (funcall then)
       (think pusher (* 2 steps)

@@ -1,9 +1,59 @@
-;;;; agents.lisp -- agents of NASA Tileworld, which carry tiles to their places.
+;;;; agents.lisp -- what agents of NASA Tileworld can do, and agents that carry tiles.
 
 (in-package :ars-testbeds.wind)
 (in-readtable :nisp)
 
-;;; They carry the tile that takes the fewest steps, to its place and down.
+;;; What agents can do.
+
+(defun continuing (then)
+  "Return a continuation that calls the function THEN, unless the command was interrupted."
+  (lambda (err &rest results)
+    (declare (ignore results))
+    (unless (eq err :interrupt) (funcall then))))
+
+(defun rest-a-step (then)
+  "Let the robot wait for a step, then call the function THEN."
+  (think carrier 2 (continuing then)))
+
+(defun step-to (place then)
+  "Let the robot take a step towards PLACE, a cell (x y), first along x; then call THEN."
+  (unless (typep place '(cons real (cons real null)))
+    (reject-argument 'step-to 'place place "a cell, a list (x y), such as TILE-TARGET returns"))
+  (destructuring-bind (x y) place
+    (let ((dx (- x (floor (robot-x carrier)))) (dy (- y (floor (robot-y carrier)))))
+      (cond ((plusp dx) (robot-step carrier :east (continuing then)))
+            ((minusp dx) (robot-step carrier :west (continuing then)))
+            ((plusp dy) (robot-step carrier :south (continuing then)))
+            ((minusp dy) (robot-step carrier :north (continuing then)))
+            (t (rest-a-step then))))))
+
+(defun grasp-tile (tile then)
+  "Let the hand grasp TILE if its first cell is where the robot is; then call THEN."
+  (check-tile 'grasp-tile tile)
+  (let ((camera (robot-camera carrier 0)))
+    (flet ((give-up () (camera-untrack camera (continuing then)))
+           (grasp (designator)
+             (hand-grasp-desig (robot-hand carrier 0) camera designator
+                               (continuing (lambda () (camera-untrack camera (continuing then)))))))
+      (camera-get-object-designator
+       camera :local `((:tile ,(first tile)) (:handle t))
+       (continuation (err camera designator)
+         (cond ((eq err :interrupt))
+               (err (give-up))
+               (t (camera-track camera designator
+                                (continuation (err camera designator)
+                                  (cond ((eq err :interrupt))
+                                        (err (give-up))
+                                        (t (grasp designator))))))))))))
+
+(defun put-down (then)
+  "Let the hand put down what it holds, if all of the tile fits on the floor here; then call THEN."
+  (let ((tile (held-tile)))
+    (if (and tile (not (on-floor-p (cells-at (robot-cell) (third tile)))))
+        (rest-a-step then)
+        (hand-ungrasp (robot-hand carrier 0) (continuing then)))))
+
+;;; Agents with full knowledge carry the tile that takes the fewest steps, to its place and down.
 
 (defun effort (tile)
   (+ (steps-between (robot-cell) (anchor tile)) (steps-between (anchor tile) (tile-target tile))))

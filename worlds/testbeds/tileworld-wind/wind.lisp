@@ -33,10 +33,23 @@
 (defrobot carrier (windy-floor (8.5 8.5) 0) :cameras ((6.28 1000)) :hands (100))
 
 (defun tiles () "Return a new list of the tiles." (copy-list *tiles*))
-(defun tile-thing (tile) "Return the first cell of TILE, a thing, which can be grasped."
+
+(defun check-tile (operator tile)
+  "Signal WRONG-ARGUMENT, about the function OPERATOR, unless TILE is a tile."
+  (unless (typep tile '(cons integer (cons cons (cons cons cons))))
+    (reject-argument operator 'tile tile
+                     "a tile, as TILES returns them; (held-tile) is NIL if the hand is empty")))
+
+(defun tile-thing (tile)
+  "Return the first cell of TILE, a thing, which can be grasped."
+  (check-tile 'tile-thing tile)
   (fourth tile))
-(defun tile-target (tile) "Return the place of TILE, the cell (x y) of its first cell."
+
+(defun tile-target (tile)
+  "Return the place of TILE, the cell (x y) of its first cell."
+  (check-tile 'tile-target tile)
   (second tile))
+
 (defun find-tile (id) "Return the tile with the number ID." (assoc id *tiles*))
 (defun game-over-p () "True if the game has ended." (<= (* 2 game-steps*) (simulation-tick)))
 
@@ -57,6 +70,7 @@
 
 (defun tile-in-place-p (tile)
   "True if TILE lies in its place."
+  (check-tile 'tile-in-place-p tile)
   (and (not (held-p tile)) (equal (anchor tile) (tile-target tile))))
 
 (defun steps-between (place other)
@@ -183,53 +197,6 @@ agent that moves by steps has more."
      (max 1 *readings*) tile-count*))
 
 (defmeasure blown "By how many cells the wind moved tiles." *blown*)
-
-;;; For agents.
-
-(defun continuing (then)
-  "Return a continuation that calls the function THEN, unless the command was interrupted."
-  (lambda (err &rest results)
-    (declare (ignore results))
-    (unless (eq err :interrupt) (funcall then))))
-
-(defun rest-a-step (then)
-  "Let the robot wait for a step, then call the function THEN."
-  (think carrier 2 (continuing then)))
-
-(defun step-to (place then)
-  "Let the robot take a step towards PLACE, a cell (x y), first along x; then call THEN."
-  (destructuring-bind (x y) place
-    (let ((dx (- x (floor (robot-x carrier)))) (dy (- y (floor (robot-y carrier)))))
-      (cond ((plusp dx) (robot-step carrier :east (continuing then)))
-            ((minusp dx) (robot-step carrier :west (continuing then)))
-            ((plusp dy) (robot-step carrier :south (continuing then)))
-            ((minusp dy) (robot-step carrier :north (continuing then)))
-            (t (rest-a-step then))))))
-
-(defun grasp-tile (tile then)
-  "Let the hand grasp TILE if its first cell is where the robot is; then call THEN."
-  (let ((camera (robot-camera carrier 0)))
-    (flet ((give-up () (camera-untrack camera (continuing then)))
-           (grasp (designator)
-             (hand-grasp-desig (robot-hand carrier 0) camera designator
-                               (continuing (lambda () (camera-untrack camera (continuing then)))))))
-      (camera-get-object-designator
-       camera :local `((:tile ,(first tile)) (:handle t))
-       (continuation (err camera designator)
-         (cond ((eq err :interrupt))
-               (err (give-up))
-               (t (camera-track camera designator
-                                (continuation (err camera designator)
-                                  (cond ((eq err :interrupt))
-                                        (err (give-up))
-                                        (t (grasp designator))))))))))))
-
-(defun put-down (then)
-  "Let the hand put down what it holds, if all of the tile fits on the floor here; then call THEN."
-  (let ((tile (held-tile)))
-    (if (and tile (not (on-floor-p (cells-at (robot-cell) (third tile)))))
-        (rest-a-step then)
-        (hand-ungrasp (robot-hand carrier 0) (continuing then)))))
 
 (defun play (agent)
   "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
