@@ -201,6 +201,11 @@
                        ("tileworld" "--knob" "dynamism=3" "--knob" "dynamism*=4")))
     (signals cli::usage-error (apply #'testbed-said arguments) "~S" arguments)))
 
+(test testbed-command.names-the-option-with-a-wrong-value
+  (loop for (option value) in '(("--workers" "0") ("--seeds" "x") ("--seeds" "1.5") ("--out" ""))
+        for text = (line-said-by (lambda () (testbed-said "tileworld" option value)))
+        do (is (eql 0 (search (format nil "~A takes " option) text)) "~A" text)))
+
 (test testbed-command.says-what-a-knob-can-be
   (is (search "dynamism* cannot be 0. Give an integer from 1 to 1000"
               (line-said-by (lambda () (testbed-said "tileworld" "--knob" "dynamism=0")))))

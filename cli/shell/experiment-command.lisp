@@ -11,7 +11,8 @@
   (let ((number (number-from-text text)))
     (if (and (integerp number) (<= 1 number 1000000000))
         number
-        (reject-usage "~A is not a whole number from 1 to 1e9, in digits." text))))
+        (reject-usage "~A takes a whole number from 1 to 1e9, in digits, not ~A." *option-name*
+                      text))))
 
 (defun parse-interval-width (text)
   (let ((number (number-from-text text)))
@@ -41,7 +42,9 @@
                       +largest-count-of-shards+ text))))
 
 (defun parse-path (text)
-  (if (string= text "") (reject-usage "The name of a file or directory must not be empty.") text))
+  (if (string= text "")
+      (reject-usage "~A takes the name of a file or directory, not an empty one." *option-name*)
+      text))
 
 (defparameter *experiment-options*
   '(("--trials" :trials parse-count) ("--workers" :workers parse-count) ("--out" :out parse-path)

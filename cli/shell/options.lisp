@@ -14,6 +14,8 @@
 
 ;;; Values of options.
 
+(defvar *option-name* "" "The name of the option whose value is parsed.")
+
 (defun parse-seed (text)
   (handler-case (parse-integer text)
     (error () (reject-usage "--seed takes an integer, not ~A." text))))
@@ -79,7 +81,8 @@ is optional, an empty value counts as none.")
         (when (and value (null parser)) (reject-usage "~A takes no value." name))
         (multiple-value-bind (text left)
             (if value (values value arguments) (read-option-value option arguments table))
-          (values (list key (if parser (funcall parser text) t)) left))))))
+          (let ((*option-name* name))
+            (values (list key (if parser (funcall parser text) t)) left)))))))
 
 (defun parse-options (arguments &key (table *options*) others)
   "Parse ARGUMENTS, a list of strings, by the options of TABLE. Return a list of (key value). If
