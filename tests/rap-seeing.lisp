@@ -236,8 +236,8 @@
       (install-goal '(see-drive 2) 0 deadline)
       (process-goal-agenda)
       (let ((told (find "was interrupted by" (ars-magna.tests::texts-of-warnings) :test #'search)))
-        (is (and told (has "in goal 1 (see-drive 3) in the plan work-on-agenda" told)
-                 (has "in goal 2 (see-drive 2) in the plan work-on-agenda" told))
+        (is (and told (has "goal 1 (see-drive 3) in the plan work-on-agenda" told)
+                 (has "goal 2 (see-drive 2) in the plan work-on-agenda" told))
             "~A" told)))))
 
 ;;; The debugger.
