@@ -108,7 +108,7 @@ computed for long wants the next tick, as time passes while plans compute."
 
 (defun call-holding-plans (function interface)
   "This thread has locked INTERFACE. Call FUNCTION, interruptibly, as the holder of its plans."
-  (let* ((held (cons interface *held-interfaces*)) (*held-interfaces* held))
+  (let* ((held (cons interface *held-interfaces*)) (*held-interfaces* held) (*urgent-p* t))
     (declare (dynamic-extent held))
     (in-any-case
       (progn (setf (interface-holder interface) (current-thread))
@@ -196,10 +196,10 @@ you can meanwhile answer a plan that waits in a debugger."
       (funcall function)
       (call-wanting-plans
        (lambda (have)
-         (call-when-free (interface-lock interface)
-                         (lambda ()
-                           (funcall have)
-                           (call-holding-plans function interface))))
+         (call-when-free-answering (interface-lock interface)
+                                   (lambda ()
+                                     (funcall have)
+                                     (call-holding-plans function interface))))
        interface)))
 
 (defmacro with-plans ((interface) &body body)

@@ -11,7 +11,7 @@
                 #:warning-given-p #:record-progress-checked)
   (:import-from :ars-magna.time
                 #:*simulation* #:resource-event #:seconds-now #:current-simulation #:asking
-                #:ask-later #:live-p
+                #:ask-later #:live-p #:call-when-free-answering #:*urgent-p*
                 #:grab-resource #:timeline-real-p #:thinking-charged-p #:thinking-budget
                 #:timeline-tick #:check-not-secluded #:check-not-over
                 #:wake-owner #:record-code-moment #:timeline-inbox #:agenda-pending #:*hog-seconds*

@@ -15,7 +15,7 @@ resumed, on all processors and on many machines. Names lparallel.")
                 #:save-picture
                 #:open-display #:*display-opener* #:group-by)
   (:import-from :ars-magna.time #:current-simulation #:timeline-custody #:answer-questions
-                #:custody-questions #:timeline-phase
+                #:leave-question #:timeline-phase
                 #:seconds-now #:check-rate #:thinking-mode-p #:thinking-modes-text)
   (:import-from :ars-magna.world #:thing)
   (:import-from :ars-magna.robot #:robot #:find-blueprint #:all-blueprints #:blueprint-name

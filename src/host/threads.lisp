@@ -69,12 +69,14 @@ The time for serving others does not count. Return true if SEMAPHORE was decreme
         thereis (serve-and-wait-once semaphore (min left 0.2))
         while (< 0.2 left)))
 
-(defun call-when-free (lock function)
+(defun call-when-free (lock function &optional (serve (constantly nil)) (seconds 0.2))
   "Wait until no other thread holds LOCK. Then call FUNCTION while holding LOCK, and return its
-values. While this thread waits, it serves the front end and allows interrupts."
+values. While this thread waits, it serves the front end and allows interrupts, and each SECONDS it
+calls the function SERVE."
   (loop
-    (sb-thread:with-mutex (lock :timeout 0.2)
+    (sb-thread:with-mutex (lock :timeout seconds)
       (return-from call-when-free (funcall function)))
+    (funcall serve)
     (allowing-interrupts (serve-while-waiting *front-end*))))
 
 (defvar *own-thread-p* nil "True in threads that START-THREAD has started.")

@@ -2,7 +2,7 @@
 
 (in-package :ars-magna.time)
 
-(export '(ask-later call-in-run-of))
+(export '(ask-later call-in-run-of call-when-free-answering))
 
 (defgeneric call-in-run-of (object function)
   (:documentation "Call FUNCTION, with the run of OBJECT as the current one if OBJECT has a run.")
@@ -78,10 +78,15 @@ current one, as ASK calls a function. Return the values of BODY."
            (reject-use "The function called in the simulator's thread was aborted."))
           (t (error trouble)))))
 
+(defun changing-in-tick-p ()
+  "True if this thread is inside a tick of the current run and its world changes, phases 1 to 7."
+  (and *simulation*
+       (timeline-ticking-p (timeline-of *simulation*))
+       (owner-p *simulation*)))
+
 (defun check-outside-ticks ()
   "Signal MISUSE inside a tick, where a thread answers no questions and so must not ask any."
-  (when (and *simulation* (timeline-ticking-p (timeline-of *simulation*))
-             (owner-p *simulation*))
+  (when (changing-in-tick-p)
     (reject-use "A tick of ~A is under way here. Another live world can be asked or changed only ~
                  between ticks, for example in a continuation."
                 (timeline-name (timeline-of *simulation*)))))
@@ -104,7 +109,7 @@ forks repeat what the current code does, they repeat what FUNCTION does."
 (defun ask-owner (custody function)
   (check-outside-ticks)
   (let ((question (make-question (function-as-of-here function))))
-    (atomic-push (lambda () (answer-question question)) (custody-questions custody))
+    (leave-question custody (lambda () (answer-question question)))
     (wake-if-asleep custody)
     (in-any-case
       (await-answer question custody)
@@ -118,8 +123,28 @@ ALLOWING-INTERRUPTS. Return nothing."
   (let ((custody (timeline-custody (timeline-of object)))
         (question (make-question (function-as-of-here function))))
     (deferring-interrupts
-      (atomic-push (lambda () (deferring-interrupts (answer-question question)))
-                   (custody-questions custody))
+      (leave-question custody (lambda () (deferring-interrupts (answer-question question))))
       ;; If this thread gets custody, it answers when it gives that up.
       (call-with-custody custody (constantly nil) (lambda () (wake-if-asleep custody))))
     (values)))
+
+;;; Plans have a lock. The thread that holds it may ask the owner of the world, for example because
+;;; a plan sets a run variable; and the owner may wait for the lock, for example to print plans.
+
+(defun answer-holders ()
+  "Answer the urgent questions about this thread's worlds. Signals MISUSE if there is one inside a
+tick in phases 1 to 7, where no question can be answered."
+  (if (changing-in-tick-p)
+      (when (some #'urgent-question-p *held-custodies*)
+        (allowing-interrupts
+          (reject-use "The plans of ~A wait for the end of this tick, so code in the tick cannot ~
+                       wait for the plans. Begin and look at plans between ticks, for example in ~
+                       a continuation." (timeline-name (timeline-of *simulation*)))))
+      (dolist (custody *held-custodies*)
+        (when (has-custody-p custody) (answer-questions custody t)))))
+
+(defun call-when-free-answering (lock function)
+  "Wait until no other thread holds LOCK. Then call FUNCTION while holding LOCK, and return its
+values. While this thread waits, it answers the urgent questions about its worlds. FUNCTION must
+bind *URGENT-P* to true if it may ask."
+  (call-when-free lock function #'answer-holders (if *held-custodies* 0.002 0.2)))

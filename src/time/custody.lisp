@@ -2,7 +2,8 @@
 
 (in-package :ars-magna.time)
 
-(export '(answer-questions call-with-custody has-custody-p answer-own-questions))
+(export '(answer-questions call-with-custody has-custody-p answer-own-questions leave-question
+          *urgent-p*))
 
 ;;; One thread at a time owns a world and the timelines of its runs: it has custody. It paces the
 ;;; world, or has custody while it passes ticks or changes it. A thread takes custody if no other
@@ -12,7 +13,8 @@
 (define-record (custody (:constructor make-custody ()))
   "The record of the thread that owns a world."
   (thread nil t :writable)
-  (questions '() t "questions of other threads to the owner, newest first" :writable :export)
+  (questions '() t "questions of other threads to the owner, newest first: conses of a function and
+whether it is urgent" :writable :export)
   (wake-up (make-semaphore "custody") t)
   (asleep-p nil t :writable)
   (pacing nil t "the pacing by which the owner passes ticks, or NIL if it does not pace the world"
@@ -31,12 +33,34 @@
   "Take CUSTODY for this thread, if no thread has it. Return true if this thread has taken it."
   (swap-if-eq (custody-thread custody) nil (current-thread)))
 
-(defun answer-questions (custody)
-  "Call the functions that other threads have left for the owner of CUSTODY, in order."
+(defvar *urgent-p* nil
+  "True if this thread holds something that owners of worlds may wait for, such as plans. Then its
+questions are urgent: an owner that waits for such a thing answers them meanwhile.")
+
+(defun leave-question (custody function)
+  "Leave FUNCTION, without arguments, for the owner of CUSTODY to call."
+  (atomic-push (cons function *urgent-p*) (custody-questions custody)))
+
+(defun urgent-question-p (custody)
+  (find-if #'cdr (custody-questions custody)))
+
+(defun take-question (custody urgent-p)
+  "Remove the oldest question left for the owner of CUSTODY, an urgent one if URGENT-P is true, and
+return its function; NIL if there is none."
   (loop for questions = (custody-questions custody)
-        while questions
-        when (swap-if-eq (custody-questions custody) questions '())
-          do (call-each #'funcall (reverse questions))))
+        for question = (find-if (if urgent-p #'cdr #'car) questions :from-end t)
+        while question
+        when (swap-if-eq (custody-questions custody) questions
+                         (remove question questions :test #'eq))
+          return (car question)))
+
+;; One at a time: a function may wait for a thread whose question is left, and then answers that.
+(defun answer-questions (custody &optional urgent-p)
+  "Call the functions that other threads have left for the owner of CUSTODY, in order; only the
+urgent ones if URGENT-P is true."
+  (loop for function = (take-question custody urgent-p)
+        while function
+        do (funcall function)))
 
 (defun give-up-custody (custody)
   "Give up CUSTODY, after answering pending questions."

@@ -11,12 +11,17 @@
 (defrobot porter (depot (10.5 10.5) 0))
 
 (define-run-variable *updates* 0)
+(define-run-variable *looks* 0)
 
 (defun update-often (who times run)
-  "Add TIMES facts of WHO to the memory of RUN, and add 1 to its variable as often."
+  "Add TIMES facts of WHO to the memory of RUN, and add 1 to its variable as often. Print the plans
+before each tenth fact."
   (dotimes (n times)
     (asking (run)
       (incf *updates*)
+      (when (zerop (mod n 10))
+        (print-plans (make-broadcast-stream))
+        (incf *looks*))
       (memory-add (list 'update who n)))))
 
 (def-interp-proc update-in-plan (times)
@@ -45,7 +50,9 @@
     (ars-magna.benchmarks:say "a plan and 4 threads, one live run" (/ all seconds) "updates/s")
     (ars-magna.benchmarks:say "  updates of a run variable lost, of 1,000" (- all *updates*) "")
     (ars-magna.benchmarks:say "  facts added to the memory lost, of 1,000"
-                              (- all (length main-memory*)) ""))
+                              (- all (length main-memory*)) "")
+    (ars-magna.benchmarks:say "  looks at the plan that are missing, of 80"
+                              (- (* threads (/ times 10)) *looks*) ""))
   (stop-simulator))
 
 (in-package :ars-magna.benchmarks)

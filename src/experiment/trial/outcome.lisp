@@ -222,7 +222,7 @@ SAMPLER keeps the first error."
     (sample-once sampler simulation)
     (let ((count (funcall gate simulation))
           (custody (timeline-custody (simulation-timeline simulation))))
-      (atomic-push (lambda () (sample-once sampler simulation)) (custody-questions custody))
+      (leave-question custody (lambda () (sample-once sampler simulation)))
       (min 1 count))))
 
 (defun call-recording-series (function experiment result)
