@@ -139,12 +139,13 @@ is true if it is not known."
 
 (defun file-of-source (source)
   "Return the file of SOURCE, a definition source of SBCL, and the write date of the file at the
-time of the definition; NIL if the definition was typed."
-  (let ((path (and source (sb-introspect:definition-source-pathname source))))
-    (and path
-         (let ((name (native-name (translate-logical-pathname path))))
-           (values name (or (sb-introspect:definition-source-file-write-date source)
-                            (gethash name *write-dates*)))))))
+time of the definition; NIL if the definition was typed, or is of a file that only the builders of
+SBCL had."
+  (let* ((path (and source (sb-introspect:definition-source-pathname source)))
+         (name (and path (ignore-errors (native-name (translate-logical-pathname path))))))
+    (and name
+         (values name (or (sb-introspect:definition-source-file-write-date source)
+                          (gethash name *write-dates*))))))
 
 (defun file-of-code (function)
   "Return the values of FUNCTION-FILE, using only the debug information in the code of FUNCTION."
