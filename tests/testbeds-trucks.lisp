@@ -287,6 +287,7 @@ lifted it."
                     (next-place nil) (last-scan nil) (time-cost nil) (road-length (0 1))
                     (found-blocked-p 4) (road-speed :ice 0 0) (road-fuel :paved nil 0)
                     (slip-chance :dirt 2) (road-speed :dirt 0 nil) (drop-chance -1)
+                    (cost-between 0 5 null) (cost-between 0 5 third)
                     (miss-chance nil)))
       (signals base:wrong-argument
         (apply (find-symbol (string (first form)) :ars-testbeds.trucks) (rest form))))))

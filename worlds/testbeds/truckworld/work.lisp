@@ -75,6 +75,8 @@ destination value deadline weight)."
   (loop for road in *roads*
         for (a b) = road
         for price = (funcall cost road)
+        do (check-argument truckworld price (typep price '(real 0))
+             "a number, 0 or more, as the cost of a road")
         collect (list a b price)
         collect (list b a price)))
 
