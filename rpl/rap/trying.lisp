@@ -65,18 +65,15 @@ the name of the method, VALUES those of its variables, TEXT why the try did not 
                   other; give it a success test or contexts that end this"
           (data-text (endless-rap-call failure)) (endless-rap-depth failure)))
 
-(defun too-deep-p (failure)
-  (and (symbolp (failure-class failure))
-       (failure-class failure)
-       (string= 'too-deep (failure-class failure))))
+(defun of-class-p (failure &rest names)
+  "True if the class of FAILURE is a symbol with one of NAMES."
+  (let ((class (failure-class failure)))
+    (and class (symbolp class) (member class names :test #'string=))))
 
 (defun ends-rap-p (failure)
   "True if FAILURE, of a method, ends the RAP: an error of Lisp or a limit of plans."
   (or (typep failure 'lisp-failure)
-      (and (symbolp (failure-class failure))
-           (failure-class failure)
-           (member (failure-class failure) '(too-deep too-many-tasks too-many-commands)
-                   :test #'string=))))
+      (of-class-p failure 'too-deep 'too-many-tasks 'too-many-commands)))
 
 ;;; Tries.
 
@@ -149,7 +146,7 @@ NIL if all that apply were tried LIMIT times. ROWS are lists (name query variabl
 (defun explained (failure task call)
   "Return FAILURE, or, if it is that calls are too deep, and TASK is of a RAP with CALL inside an
 equal one, a failure of the same class that says so."
-  (if (and (too-deep-p failure)
+  (if (and (of-class-p failure 'too-deep)
            (not (typep failure 'endless-rap))
            (< 1 (count call (rap-calls-around task) :test #'value-equal)))
       (failure-of (make-condition 'endless-rap :class (failure-class failure) :call call
