@@ -112,6 +112,14 @@
           (is (not (search "main-memory*" text)) "~A" text))))
     (is (null main-memory*))))
 
+(test rap-memory.says-what-needs-a-run
+  (loop for (variable function) in (list (list "main-memory*" (lambda () (memory-add '(g 1))))
+                                         (list "main-agenda*"
+                                               (lambda () (install-goal '(rap-work a 1)))))
+        for text = (text-of-refusal-by function)
+        do (is (search (format nil "The run variable ~A has a value only in a run" variable) text)
+               "~A" text)))
+
 (test rap-memory.dumps-facts-as-they-can-be-typed
   (in-rap-run
     (mapc #'memory-add '((says "cup") (says cup) (says #\a) (at #(a "b") :key nil)))

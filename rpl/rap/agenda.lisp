@@ -36,11 +36,7 @@ may have.")
   (unless (goal-call-p goal)
     (reject-argument operator 'goal goal
                      "a list (name argument...) with the name of a RAP or another plan"))
-  (unless (plain-datum-p goal (lambda (object) (or (thing-p object) (robot-p object))))
-    (reject-argument operator 'goal (cut (data-text goal) 60)
-                     (format nil "a list whose arguments are plain data (numbers, symbols, ~
-                                  characters, strings, lists, simple vectors), or things and ~
-                                  robots of the current run")))
+  (check-run-variable-value operator 'goal goal (world-of-current-run 'main-agenda*))
   (unless (ground-p goal)
     (reject-argument operator 'goal goal "a list without variables such as ?x"))
   (check-priority operator priority)

@@ -101,7 +101,7 @@ extended bindings, or :FAIL."
                      (format nil "a list that begins with a symbol other than ~{~(~A~)~^, ~}, and ~
                                   contains no variable ?x"
                              *query-operators*)))
-  (check-run-variable-value operator 'fact fact))
+  (check-run-variable-value operator 'fact fact (world-of-current-run 'main-memory*)))
 
 (defun check-pattern (operator pattern)
   (unless (pattern-valid-p pattern)

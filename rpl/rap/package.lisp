@@ -5,12 +5,12 @@
 success test holds, a memory of facts with rules, and an agenda of goals with priorities and
 deadlines. Use this package together with ARS and NISP.")
   (:import-from :ars-magna.basics #:reject-argument #:reject-use #:value-equal
-                #:text-as-typed #:abridged #:proper-list-p #:define-record #:cut
-                #:plain-datum-p)
+                #:text-as-typed #:abridged #:proper-list-p #:define-record #:cut)
   (:import-from :ars-magna.definitions #:reject-clause #:definition-title #:define-registry
                 #:register #:define-user-macro #:call-with-definition #:define-operator)
   (:import-from :ars-magna.run #:stored-run-variable #:update-run-variable
-                #:check-run-variable-value #:copied-value)
+                #:check-run-variable-value #:copied-value
+                #:world-of-current-run)
   (:import-from :ars-magna.rpl.language #:variable-of #:procedure-form #:check-plan-name
                 #:define-expression #:define-plan-form
                 #:next #:at-once #:value #:child #:how #:result #:environment #:memory

@@ -4,7 +4,7 @@
 
 (export '(initialize-run-variables all-run-variables find-run-variable run-variable
           values-expected-text stored-run-variable update-run-variable check-run-variable-value
-          copied-value))
+          copied-value world-of-current-run))
 
 ;;; A run variable is a symbol macro, not a special variable: any thread reads the value of its
 ;;; current run. The values are a slot of the run's world, so forks, rewinds and saved runs have
