@@ -278,6 +278,24 @@
           (time:set-rate :free s)
           (is (equal (list before before before) (list (tick) (tick) (tick)))))))))
 
+(test live.resume-takes-effect-at-once-though-the-clock-saw-no-pause
+  "The clock's thread is busy from PAUSE to RESUME. A tick takes a hundred seconds."
+  (with-bare-simulation (s)
+    (with-live (s :free)
+      (let ((busy (base:make-semaphore "busy"))
+            (go-on (base:make-semaphore "go on"))
+            (passed (base:make-semaphore "passed")))
+        (time:ask-later s (lambda ()
+                            (base:signal-semaphore busy)
+                            (base:wait-on-semaphore go-on 60)))
+        (is-true (base:wait-on-semaphore busy 60))
+        (time:pause s)
+        (time:set-rate 1/100 s)
+        (time:schedule-call (lambda () (base:signal-semaphore passed)) nil :simulation s)
+        (time:resume s)
+        (base:signal-semaphore go-on)
+        (is-true (base:wait-on-semaphore passed 60))))))
+
 (test live.run-ticks-is-refused
   (with-bare-simulation (s)
     (with-live (s 20)

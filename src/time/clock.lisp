@@ -38,32 +38,35 @@
   (let ((rate (pacing-rate pacing)))
     (if (eq rate :free) 0d0 (/ 1d0 (float rate 1d0)))))
 
+;; RESUME takes effect at once, even if it follows PAUSE so soon that this thread saw no pause.
+(defun due-time (pacing last)
+  "Return the time when the next tick is due for PACING, if the tick before was due at LAST."
+  (if (pacing-due-p pacing)
+      (min last (seconds-now))
+      (+ last (seconds-per-tick pacing))))
+
 (defun keep-pace (custody pacing last)
   "Sleep until the next tick is due, if the tick before was due at the time LAST, in seconds. Return
 the time when the next tick was due; lateness of more than a quarter of a second is not made up."
   ;; The rate may change meanwhile.
-  (loop for due = (+ last (seconds-per-tick pacing))
+  (loop for due = (due-time pacing last)
         for left = (- due (seconds-now))
         while (and (plusp left) (not (paused-or-stopped-p pacing)))
         do (sleep-until-woken custody left)
            (answer-questions custody)
-        finally (return (max due (- (seconds-now) (if (eq :free (pacing-rate pacing)) 0 0.25d0))))))
+        finally (setf (pacing-due-p pacing) nil)
+                (return (max due (- (seconds-now) (if (eq :free (pacing-rate pacing)) 0 0.25d0))))))
 
-(defun time-to-go-on (pacing last paused-p)
-  "Return the time from which KEEP-PACE counts after a rest, if the tick before was due at LAST. If
-PAUSED-P is true, RESUME ended the rest: the next tick is due at once. Otherwise it is due a tick's
-time after LAST at least."
-  (let ((earliest (- (seconds-now) (seconds-per-tick pacing))))
-    (if paused-p earliest (max last earliest))))
+(defun time-to-go-on (pacing last)
+  "Return the time from which KEEP-PACE counts after a rest, if the tick before was due at LAST."
+  (max last (- (seconds-now) (seconds-per-tick pacing))))
 
-(defun rest-until-woken (custody pacing last)
-  "Sleep while there is nothing to do for PACING. Return the time from which KEEP-PACE counts."
-  (let ((paused-p (pacing-paused-p pacing)))
-    ;; The timeout covers tests that come true without a request (reading 88).
-    (sleep-until-woken custody 1 (lambda ()
-                                   (and (nothing-to-do-p pacing)
-                                        (not (pacing-stopping-p pacing)))))
-    (time-to-go-on pacing last paused-p)))
+(defun rest-until-woken (custody pacing)
+  "Sleep while there is nothing to do for PACING, at most a second."
+  ;; The timeout covers tests that come true without a request (reading 88).
+  (sleep-until-woken custody 1 (lambda ()
+                                 (and (nothing-to-do-p pacing)
+                                      (not (pacing-stopping-p pacing))))))
 
 ;;; Passing ticks.
 
@@ -83,10 +86,12 @@ time after LAST at least."
 
 (defun run-paced (custody pacing)
   "Pass ticks at the pace of PACING, until PACING is stopped or another thread has CUSTODY."
-  (loop with last = (- (seconds-now) (seconds-per-tick pacing))
+  (loop with last = (seconds-now)
         until (or (pacing-stopping-p pacing) (not (has-custody-p custody)))
         do (answer-questions custody)
-           (cond ((nothing-to-do-p pacing) (setf last (rest-until-woken custody pacing last)))
+           (cond ((nothing-to-do-p pacing)
+                  (rest-until-woken custody pacing)
+                  (setf last (time-to-go-on pacing last)))
                  (t (setf last (keep-pace custody pacing last))
                     ;; It may have been paused while it waited.
                     (unless (paused-or-stopped-p pacing)

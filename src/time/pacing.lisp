@@ -37,6 +37,8 @@ needed. CALLS records the calls of users' code by the thread."
   (over-p nil)
   (ended (make-semaphore "ended") :read-only t)
   (paused-p nil)
+  ;; True when the next tick is due at once: the first one, and the one after a pause.
+  (due-p t)
   ;; True when it should end; :REPLACED if another run follows and no thread has stopped this one.
   (stopping-p nil)
   ;; A text about the failure that has paused it, or NIL.
@@ -104,6 +106,7 @@ needed. CALLS records the calls of users' code by the thread."
 (defun set-paused (simulation paused-p steps)
   "If PAUSED-P is true, pause the live SIMULATION after STEPS more ticks; otherwise resume it."
   (when-pacing (pacing simulation)
+    (when (pacing-paused-p pacing) (setf (pacing-due-p pacing) t))
     (setf (pacing-steps pacing) steps
           (pacing-paused-p pacing) paused-p
           (pacing-trouble pacing) nil)
