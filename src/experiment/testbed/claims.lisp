@@ -131,6 +131,12 @@ and MISUSE if an agent has an error."
         ((getf row :seeds-needed) "too few seeds")
         (t "**not reproduced**")))
 
+(defun claim-p-text (p)
+  "Return the text of P, with one digit more if it would not show which side of .01 P is on."
+  (cond ((< p 1/1000) "< .001")
+        ((< 1/100 p 105/10000) (decimal-text p 4))
+        (t (decimal-text p 3))))
+
 (defun claim-row-text (row)
   "Return ROW, of CHECK-CLAIMS, as a row of a Markdown table."
   (destructuring-bind (&key settings relation less difference low high p &allow-other-keys) row
@@ -138,4 +144,4 @@ and MISUSE if an agent has an error."
       (format nil "| ~A | ~A | ~A | ~A to ~A | ~A | ~A |"
               (if settings (settings-text settings) "defaults") (relation-text relation less)
               (number difference) (number low) (number high)
-              (if (< p 1/1000) "< .001" (decimal-text p 3)) (verdict-text row)))))
+              (claim-p-text p) (verdict-text row)))))

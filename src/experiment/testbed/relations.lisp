@@ -108,5 +108,5 @@ two gaps. SCORES-OF returns the scores of a game."
                          (value-text (if less (- more) more))))
         (:within (format nil "~A, within ~A" gap (value-text more)))
         (:not-worse (format nil "~A, interval ~:[above -~;below ~]~A" gap less (value-text more)))
-        (:narrows (format nil "(~A) from ~(~A~) ~A to ~A" gap (first more)
+        (:narrows (format nil "(~A) falls from ~(~A~) ~A to ~A" gap (first more)
                           (setting-text (second more)) (setting-text (third more))))))))
