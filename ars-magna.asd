@@ -467,7 +467,7 @@
                  (:file "projecting")
                  (:file "projecting-mistakes") (:file "projecting-apart") (:file "trying-best")
                  (:module "newcomer" :serial t
-                  :components ((:file "terminal") (:file "screens") (:file "pages")
+                  :components ((:file "terminal") (:file "pages") (:file "screens")
                                (:file "session") (:file "newcomer")))
                  (:file "cli-scripts") (:file "cli-forms") (:file "cli-batches")
                  (:file "printing") (:file "isolation")

@@ -3,7 +3,8 @@
 (in-package :ars-magna.tests)
 
 ;;; A screen is compared after the texts that its session waits for have come. If it differs, it is
-;;; compared again a little later, as the last letters of a line may still be missing.
+;;; compared again a little later, as the last letters of a line may still be missing. A message of
+;;; a live robot may come before or after the prompt of the next line: both are as they should be.
 
 (defparameter *grace* 2 "For how many seconds nothing comes on a screen that is as it will be.")
 
@@ -61,10 +62,17 @@
       (loop (host:waiting-at-most (*grace*) (await-news terminal)))
     (host:deadline-passed () nil)))
 
+(defun without-prompt (line)
+  "Return LINE without its prompt if a message of a robot follows that."
+  (multiple-value-bind (prompt text) (prompt-of line)
+    (if (and prompt (message-p text)) text line)))
+
 (defun await-screen (name terminal)
   "True if the screen is as the file of NAME has it, at last when nothing has come for *GRACE*
 seconds."
-  (flet ((as-held-p () (equal (held-screen name) (masked-screen terminal))))
+  (flet ((as-held-p ()
+           (equal (mapcar #'without-prompt (held-screen name))
+                  (mapcar #'without-prompt (masked-screen terminal)))))
     (or (as-held-p)
         (progn (await-quiet terminal) (as-held-p)))))
 
