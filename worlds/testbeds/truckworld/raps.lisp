@@ -64,7 +64,7 @@
       (let ((task (next-parcel-task)))
         (cond ((null task) (return))
               ((eq :unload (first task)) (take-out (second task) arm))
-              (t (handle-failure ((rap-failed (failure) (forget-parcel (second task))))
+              (t (handle-failure ((rap-failed () (forget-parcel (second task)) (return)))
                    (take-in (second task) arm))))))))
 
 ;;; At a place.
