@@ -82,3 +82,16 @@ FILE as it is."
              (is (equal (truename directory) (uiop:pathname-directory-pathname path)))))
          (is (= 1 (run:simulation-tick (run:load-simulation "run.sim"))))
          (is-true (run:load-journal "run.journal")))))))
+
+(test saving.says-that-a-program-of-continuations-is-left-out
+  (flet ((told-p (then)
+           (with-temporary-file (file)
+             (run:with-simulation (shrew :clean t)
+               (command:robot-turn shrew .1 (lambda (&rest ignore)
+                                              (declare (ignore ignore))
+                                              (funcall then shrew)))
+               (run:run-ticks 5)
+               (run:save-simulation file)
+               (has-words-p (displayed) "SHREW: the program that issued" "not in the saved run")))))
+    (is-true (told-p (lambda (robot) (command:robot-turn robot 3))))
+    (is-false (told-p (constantly nil)))))

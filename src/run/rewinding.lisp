@@ -110,17 +110,15 @@ was advanced to the current tick of RUN."
                                          beginning." since))))))))
 
 ;; Otherwise such a robot would just stop.
-(defun warn-of-ended-programs (run)
-  "Queue a warning about commands in progress in RUN that continuations have issued."
+(defun warn-of-ended-programs (run text)
+  "Queue warnings about commands in progress in RUN that continuations have issued: TEXT, a format
+control, with the robot and the command."
   (let ((*message-queue* (simulation-messages run)))
     (dolist (robot (simulation-robots run))
       (loop for (nil nil nil command nil asker) in (mapcan #'command-in-progress-status
                                                            (cons robot (robot-parts robot)))
             do (when (starts-with-subseq "the continuation of " asker)
-                 (queue-notable-warning
-                  (format nil "~A: the program that issued ~(~A~) ends here. After a rewind, plans ~
-                               go on, but chains of continuations do not."
-                          (robot-label robot) command)))))))
+                 (queue-notable-warning (format nil text (robot-label robot) command)))))))
 
 (defun repeat-past (past asked tick)
   "Return two values: a copy of the run of PAST at the end of the tick TICK, with the requests ASKED
@@ -292,7 +290,9 @@ signal MISUSE."
         (replace-run run simulation)
         (when diverged (warn-of-divergence run diverged))
         (warn-of-redefinitions kept run)
-        (warn-of-ended-programs run)
+        (warn-of-ended-programs
+         run "~A: the program that issued ~(~A~) ends here. After a rewind, plans go on, but ~
+              chains of continuations do not.")
         run))))
 
 (addition rewind)

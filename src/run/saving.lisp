@@ -159,13 +159,16 @@ cannot be saved. Return the truename of FILE."
   (when (eq simulation *simulation*) (record-settings simulation))
   (record-progress-checked (simulation-world simulation))
   (let ((programs (program-state-for-head simulation)))
-    (call-with-savable-run
-     (lambda (simulation journal)
-       (overwrite-file (lambda (out) (write-saved-run simulation journal programs out)) file
-                        "the run" :kind :run
-                        :check (lambda (path)
-                                 (check-loadable path (simulation-name simulation)))))
-     simulation without-p)))
+    (prog1 (call-with-savable-run
+            (lambda (simulation journal)
+              (overwrite-file (lambda (out) (write-saved-run simulation journal programs out)) file
+                              "the run" :kind :run
+                              :check (lambda (path)
+                                       (check-loadable path (simulation-name simulation)))))
+            simulation without-p)
+      (warn-of-ended-programs
+       simulation "~A: the program that issued ~(~A~) is not in the saved run. Continuations ~
+                   cannot be saved: begin the program again after loading."))))
 
 ;; The restart is established in the thread that saves the run: another thread may own the run.
 (addition save-simulation)
@@ -176,8 +179,8 @@ a check. Return the truename of FILE.
 - Saved: world, things, kickers, robots and their parts, designators, tracks, odometers, commands in
   progress and requested commands, parameters, seed and dice, in a headless run also the dice of
   CL:RANDOM in its programs; and the journal, so that a replay still repeats the whole run.
-- Left out: continuations of commands and tracks, because they belong to programs; observers;
-  messages.
+- Left out: continuations of commands and tracks, because they belong to programs, with a warning;
+  observers; messages.
 Signals:
 - UNSAVABLE, with the restart SAVE-WITHOUT, if plans or events of SCHEDULE are in progress or the
   journal contains functions
