@@ -68,7 +68,7 @@ ends the Lisp process. See the manual, 3.7, A and E.")
                 #:write-testbed-list #:agent-p #:agent-arguments-text #:testbed-measures
                 #:testbed-seeds
                 #:write-agents-order #:count-broken-trials
-                #:first-broken-trial #:testbed-robots #:parameter-of-variable
+                #:broken-agents #:first-broken-trial #:testbed-robots #:parameter-of-variable
                 #:settings-text #:testbed-p #:testbed-experiment #:testbed-documentation
                 #:experiment-measures)
   (:export #:fundamental-character-output-stream #:fundamental-character-input-stream

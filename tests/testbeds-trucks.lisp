@@ -331,3 +331,9 @@ lifted it."
 (test trucks.commands-are-in-no-other-menu
   (is (null (search "MOVE-TRUCK" (joined (type-batch "help")))))
   (is (search "Drive the truck" (joined (type-batch "help move-truck")))))
+
+(test play.begins-a-game-in-a-new-run-only
+  (in-country ()
+    (let ((tick (run:simulation-tick)))
+      (signals base:misuse (ars-testbeds.trucks:play 'ars-testbeds.trucks::idle))
+      (is (= tick (run:simulation-tick))))))

@@ -152,12 +152,15 @@ UNDER-WAY is a text about a trial that took long, or NIL."
          (run-by-script experiment words options "job.sh" "spread-slurm.sh" #'slurm-settings))
         (t (run-experiment-in-this-process experiment options))))
 
+(defun print-loading-messages ()
+  "Print the messages that loading files has left, because a shell has no prompt to show them."
+  (dolist (message (take-messages))
+    (print-notice "~A" (short-error-text (message-text message)))))
+
 (defun experiment-from-words (words)
   "Return the experiment named by WORDS: its name, or a file and perhaps a name in the file."
   (prog1 (apply #'experiment-named words)
-    ;; A shell has no prompt to show warnings about definitions.
-    (dolist (message (take-messages))
-      (print-notice "~A" (short-error-text (message-text message))))))
+    (print-loading-messages)))
 
 (defun experiment-command (arguments)
   (let* ((options (parse-options arguments :table *experiment-options* :others t))

@@ -184,6 +184,7 @@ transcript as in manual E. A batch with plans to run reads no lines from a termi
 (defun run-with-options (options)
   (cond ((option-value :list options)
          (load-files-before-prompt (option-values :load options))
+         (print-loading-messages)
          (when (option-value :world options) (robot-names-in-world (option-value :world options)))
          (write-worlds)
          0)

@@ -151,18 +151,19 @@ are no agents of other testbeds."
            (loop for file in (option-values :load options) append (list "--load" file)))))
 
 (defun write-replay-advice (testbed agents knobs results options)
-  "Say how to see the first error in RESULTS of AGENTS again."
-  (multiple-value-bind (place trial) (first-broken-trial results)
-    (let ((*print-case* :downcase) (*print-pretty* nil) (*package* (find-package :keyword))
-          (name (testbed-name testbed)))
-      (format t "~%To see the first of these again, in the debugger, start the prompt and type the ~
-                 other lines:~%~{  ~A~%~}"
-              (list (prompt-command-line options)
-                    (format nil "(run-testbed '~S :seeds 1 :agents '(~S)~@[ :knobs '~S~]~:[~; ~
-                                 :tuning t~])"
-                            name (nth place agents) knobs (option-value :tuning options))
-                    "(setf *break-on-user-error* t)"
-                    (format nil "(replay-trial '~S 1 ~D)" name trial))))))
+  "Say how to see the errors in RESULTS of AGENTS again, the first one in the debugger."
+  (let ((*print-case* :downcase) (*print-pretty* nil) (*package* (find-package :keyword))
+        (name (testbed-name testbed)))
+    (format t "~%To see the first of these again, in the debugger, start the prompt and type the ~
+               other~%lines. Once you have typed the first one, the lines above work there, ~
+               too.~%~{  ~A~%~}"
+            (list (prompt-command-line options)
+                  (format nil "(run-testbed '~S :seeds 1 :agents '~S~@[ :knobs '~S~]~:[~; ~
+                               :tuning t~])"
+                          name (broken-agents agents results) knobs
+                          (option-value :tuning options))
+                  "(setf *break-on-user-error* t)"
+                  (format nil "(replay-trial '~S 1 ~D)" name (first-broken-trial results))))))
 
 (defun report-comparison (testbed results agents)
   "Print what RESULTS say of several AGENTS in TESTBED: their order, and how they differ."
@@ -258,6 +259,7 @@ named, so that none of the files would play."
     (check-testbed-options options words)
     (let ((known (all-testbeds)))
       (load-files-before-prompt (option-values :load options))
+      (print-loading-messages)
       (check-loaded-agent-named options words known))
     (call-reporting-interruption
      (lambda ()

@@ -2,8 +2,8 @@
 
 (in-package :ars-magna.experiment)
 
-(export '(write-testbed-list write-agents-order count-broken-trials
-          first-broken-trial))
+(export '(write-testbed-list write-agents-order broken-agents count-broken-trials
+          first-broken-trial check-new-game))
 
 (addition start-agent)
 (defun start-agent (agent)
@@ -14,6 +14,13 @@ Return nothing. Signals UNKNOWN-NAME."
         ((and agent (symbolp agent) (fboundp agent)) (funcall agent))
         (t (reject-name "agent" agent '())))
   (values))
+
+(defun check-new-game ()
+  "Signal MISUSE unless a game can begin here, in a run that has passed no ticks."
+  (let ((tick (simulation-tick)))
+    (unless (zerop tick)
+      (reject-use "play: a game begins at tick 0, and this run is at tick ~D. To play on, let ~
+                   ticks pass by (run-ticks N); for another game, begin another run." tick))))
 
 (defun call-with-fixed-knobs (knobs function)
   "Return the values of FUNCTION, which plays a game. Signal MISUSE if one of KNOBS, parameters, has
@@ -102,10 +109,15 @@ DEFEXPERIMENT."
   "Return how many trials of RESULTS had an error or took too long."
   (loop for sample in (results-samples results) sum (length (broken-trials sample))))
 
+(defun broken-agents (agents results)
+  "Return those of AGENTS, in the order of the samples of RESULTS, that have broken trials."
+  (loop for agent in agents
+        for sample in (results-samples results)
+        when (broken-trials sample) collect agent))
+
 (defun first-broken-trial (results)
-  "Return the place of the first sample of RESULTS with a broken trial, and the trial's number."
-  (let ((place (position-if #'broken-trials (results-samples results))))
-    (values place (first (broken-trials (nth place (results-samples results)))))))
+  "Return the number of the first broken trial of the first sample of RESULTS that has one."
+  (first (some #'broken-trials (results-samples results))))
 
 (defun nearest-mean (numbers)
   (float (/ (reduce #'+ numbers :key #'rational) (length numbers)) 1d0))

@@ -3,6 +3,7 @@
 (ars:define-user-package :ars-testbeds.tiles
   (:documentation "Tileworld with tiles to push, holes of several cells, and obstacles.")
   (:import-from :ars-magna.base #:reject-argument)
+  (:import-from :ars-magna.experiment #:check-new-game)
   (:export #:tileworld-tiles #:pusher #:share #:filled #:bound
            #:hole-interval* #:hole-life* #:hole-cells* #:score-spread* #:soft-bounds*
            #:tile-interval* #:tile-life* #:obstacle-interval* #:obstacle-life*

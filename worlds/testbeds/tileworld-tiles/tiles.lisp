@@ -218,6 +218,7 @@ code, or NIL."
 
 (defun play (agent)
   "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
+  (check-new-game)
   (robot-set-speed pusher max-speed*)
   (robot-set-turn-angle pusher max-turn-angle*)
   (run-ticks 1)

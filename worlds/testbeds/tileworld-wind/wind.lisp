@@ -200,6 +200,7 @@ agent that moves by steps has more."
 
 (defun play (agent)
   "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
+  (check-new-game)
   (robot-set-speed carrier max-speed*)
   (robot-set-turn-angle carrier max-turn-angle*)
   (run-ticks 1)

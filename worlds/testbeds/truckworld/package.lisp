@@ -8,6 +8,7 @@
   (:import-from :ars-magna.robot #:drive-tick #:set-robot-angle)
   (:import-from :ars-magna.rpl-robot #:define-fluents #:define-outcome)
   (:import-from :ars-magna.base #:define-argument-type #:check-argument #:reject-use)
+  (:import-from :ars-magna.experiment #:check-new-game)
   (:import-from :ars-rap #:define-rap #:define-memory-rule #:rap-failed #:memory-add
                 #:memory-delete #:memory-set #:memory-query #:install-goal #:remove-goal
                 #:agenda-goals #:work-on-agenda)

@@ -37,6 +37,7 @@
 (defun play (agent &key (until game-time*))
   "Play a game with AGENT, the name of a plan or function, up to the tick UNTIL, by default to its
 end. Return true if the game is over. If it is not, run more ticks, fork or rewind as in any run."
+  (check-new-game)
   (robot-set-speed truck max-speed*)
   (run-ticks 1)
   (let ((clock (find-thing 'clock)))
