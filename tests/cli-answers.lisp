@@ -34,3 +34,16 @@
        (run:call-with-thread-bindings time:*simulation*
                                       (lambda () (is (typep *standard-input* 'cli::asking-text)))))
      '(ars-user::butler))))
+
+(test break.of-a-trial-that-is-run-again-waits-for-no-command
+  (let ((written (type-at-terminal
+                  "(defexperiment go-and-break \"Breaks.\" (:robots butler) (:trials 1)
+                     (:run (robot-go-forward butler 1 (continuation (err robot) (error \"no\")))
+                           (run-ticks 9) (error \"boom\")))"
+                  "(setf *break-on-user-error* t)"
+                  "(replay-trial 'go-and-break 1 1)" "(+ 2 3)" "0" "(+ 3 4)"
+                  "(setf *break-on-user-error* nil)")))
+    (is-true (written-p "*BREAK* -> " written) "~S" written)
+    (is-true (written-p "5" written))
+    (is-true (written-p "7" written))
+    (is-false (some (lambda (line) (search "between lines only" line)) written) "~S" written)))

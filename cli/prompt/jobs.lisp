@@ -132,6 +132,8 @@ Return true if no request is left that passes TEST."
   "True if SESSION reads the next line only after the commands issued so far have completed."
   (and *simulation*
        (null (session-trial session))
+       ;; A trial that REPLAY-TRIAL repeats has broken.
+       (null (simulation-gate *simulation*))
        (null (simulation-over *simulation*))
        (if (live-p *simulation*)
            (and (or (session-patient-p session) (pasted-lines-waiting-p (session-input session)))
