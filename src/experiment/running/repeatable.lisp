@@ -42,7 +42,8 @@ OTHERS, and its text in TEXTS."
     (unless (equal texts again)
       (reject-use "Trial ~D of the condition ~A has a row already, and comes out differently now: ~
                    ~{its ~A is ~A, and ~A in the table~}. Either the row has been changed, or ~
-                   something that is not in the fingerprint affects the trial, such as an object ~
+                   something that is not in the fingerprint affects the trial, such as a ~
+                   variable that trials set (define it by DEFINE-RUN-VARIABLE instead), an object ~
                    or closure that trials change, a random state, the clock, a file, or a ~
                    function of SBCL that differs in another version. Correct that, and ~A."
                   trial (condition-name condition) (differing-column columns texts again)
