@@ -121,3 +121,8 @@
                           :batch t)))
     (is (string= (second lines) (first (last lines))))
     (is-true (has-words-p (joined lines) "over at tick 5: success"))))
+
+(test trial.stays-open-if-another-has-no-row
+  (let ((text (joined (trial-lines "step 2" "trial trying well 2 /no/such/directory" "trial"))))
+    (is-true (has-words-p text "*ERROR* -> " "no/such" "Tick 2"))
+    (is-false (search "way=well" text))))

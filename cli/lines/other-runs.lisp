@@ -239,6 +239,8 @@ current trial."
         (t (multiple-value-bind (experiment condition)
                (resolve-condition (resolve-question name) condition)
              (check-trial-number experiment number)
+             ;; Before the trial that is open is left.
+             (when directory (row-of-trial experiment condition number directory))
              (open-trial-in-session session
                                     (make-open-trial experiment condition number directory))))))
 
