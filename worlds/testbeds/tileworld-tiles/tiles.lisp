@@ -217,7 +217,8 @@ code, or NIL."
               (continuation (err robot) (unless (eq err :interrupt) (funcall then err)))))
 
 (defun play (agent)
-  "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
+  "Play a game with AGENT, the name of a plan or function. Return true when the game is over.
+Signals MISUSE unless the run is at tick 0."
   (check-new-game)
   (robot-set-speed pusher max-speed*)
   (robot-set-turn-angle pusher max-turn-angle*)

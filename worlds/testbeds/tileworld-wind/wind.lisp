@@ -199,7 +199,8 @@ agent that moves by steps has more."
 (defmeasure blown "By how many cells the wind moved tiles." *blown*)
 
 (defun play (agent)
-  "Play a game with AGENT, the name of a plan or function. Return true when the game is over."
+  "Play a game with AGENT, the name of a plan or function. Return true when the game is over.
+Signals MISUSE unless the run is at tick 0."
   (check-new-game)
   (robot-set-speed carrier max-speed*)
   (robot-set-turn-angle carrier max-turn-angle*)

@@ -36,7 +36,8 @@
 
 (defun play (agent &key (until game-time*))
   "Play a game with AGENT, the name of a plan or function, up to the tick UNTIL, by default to its
-end. Return true if the game is over. If it is not, run more ticks, fork or rewind as in any run."
+end. Return true if the game is over. If it is not, run more ticks, fork or rewind as in any run.
+Signals MISUSE unless the run is at tick 0."
   (check-new-game)
   (robot-set-speed truck max-speed*)
   (run-ticks 1)
