@@ -137,3 +137,15 @@
     (is (equal '((cup)) (memory-query '(ars-magna.tests::?x) '(have ?x ?))))
     (is (equal '(cup) (memory-query '?x '(have ars-magna.tests::?x ?x))))
     (is (equal '(cup) (memory-query '?x '(and (have ?x ?n) (= ars-magna.tests::?n 1)))))))
+
+(test rap-memory.refuses-data-without-end
+  (flet ((circle (place) (let ((list (list 'a 2))) (funcall place list list) list)))
+    (in-rap-run
+      (dolist (data (list (circle (lambda (new list) (setf (cddr list) new)))
+                          (circle (lambda (new list) (setf (car list) new)))))
+        (dolist (fact (list (list 'x data) (cons 'x data)))
+          (signals wrong-argument (memory-add fact))
+          (signals wrong-argument (memory-set fact))
+          (signals wrong-argument (memory-tick fact)))
+        (is (= 0 (memory-delete (list 'x data)))))
+      (is (null main-memory*)))))

@@ -96,11 +96,13 @@ extended bindings, or :FAIL."
 (defparameter *memory-limit* 100000 "How many facts a memory can have.")
 
 (defun check-fact (operator fact)
-  (unless (and (pattern-valid-p fact) (ground-p fact))
-    (reject-argument operator 'fact (abridged fact)
-                     (format nil "a list that begins with a symbol other than ~{~(~A~)~^, ~}, and ~
-                                  contains no variable ?x"
-                             *query-operators*)))
+  ;; Only what ends can be looked at: no list in itself.
+  (when (plain-datum-p fact (constantly t))
+    (unless (and (pattern-valid-p fact) (ground-p fact))
+      (reject-argument operator 'fact (abridged fact)
+                       (format nil "a list that begins with a symbol other than ~{~(~A~)~^, ~}, ~
+                                    and contains no variable ?x"
+                               *query-operators*))))
   (check-run-variable-value operator 'fact fact (world-of-current-run 'main-memory*)))
 
 (defun check-pattern (operator pattern)
@@ -116,7 +118,7 @@ extended bindings, or :FAIL."
 (defun entries-with (fact entries operator)
   "Return ENTRIES with FACT, which OPERATOR adds in this tick, at the beginning. Signals MISUSE."
   (let ((old (find-entry fact entries)))
-    (when (and (null old) (nth (1- *memory-limit*) entries))
+    (when (and (null old) (<= *memory-limit* (length entries)))
       (reject-use "~(~A~): there is no room for the fact ~A. The memory has ~D facts, and can have ~
                    no more. Delete some by (memory-delete PATTERN)."
                   operator (data-text fact) *memory-limit*))

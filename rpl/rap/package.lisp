@@ -5,7 +5,7 @@
 success test holds, a memory of facts with rules, and an agenda of goals with priorities and
 deadlines. Use this package together with ARS and NISP.")
   (:import-from :ars-magna.basics #:reject-argument #:reject-use #:value-equal
-                #:text-as-typed #:abridged #:proper-list-p #:define-record #:cut)
+                #:text-as-typed #:abridged #:proper-list-p #:plain-datum-p #:define-record #:cut)
   (:import-from :ars-magna.definitions #:reject-clause #:definition-title #:define-registry
                 #:register #:define-user-macro #:call-with-definition #:define-operator)
   (:import-from :ars-magna.run #:stored-run-variable #:update-run-variable
